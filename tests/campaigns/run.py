@@ -38,6 +38,7 @@ from tests.campaigns.poses import pose_campaign
 from tests.campaigns.positions import library_positions, random_position
 from tests.campaigns.precision_points import precision_campaign
 from tests.campaigns.processors import processor_campaign
+from tests.campaigns.roots import root_campaign
 from tests.campaigns.steps import judge_steps
 from tests.campaigns.study import study_campaign
 from tests.campaigns.whole_motions import EVERY as MOTIONS, whole_motion_campaign
@@ -139,6 +140,10 @@ def _poses(part: int) -> tuple[Counter[str], list[str]]:
     return pose_campaign(part, _OWN_PART["poses"])
 
 
+def _roots(part: int) -> tuple[Counter[str], list[str]]:
+    return root_campaign(part, _PART)
+
+
 def _defects(part: int) -> tuple[Counter[str], list[str]]:
     return defect_campaign(part, _PART)
 
@@ -158,6 +163,7 @@ CAMPAIGNS: dict[str, tuple[Callable[[int], tuple[Counter[str], list[str]]], int]
     "dead-points": (_dead_points, 1_000),
     "trains": (_random_trains, 500),
     "parallel-trains": (_parallel_trains, 40),
+    "roots": (_roots, 2_000),
     "kinds": (_kinds, 100_000),
     "links": (_links, 100_000),
     "imports": (_imports, 80_000),

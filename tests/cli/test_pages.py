@@ -54,8 +54,8 @@ Position found
   residual     0
   iterations   5
   condition    1.00
-  certificate  none: plain equations have no known bound on their curvature, so
-               there is no proof
+  certificate  true position within RADIUS of the size of the guess; no other
+               within 0.25
 
 Newton-Raphson from the guess
 
@@ -299,7 +299,9 @@ def test_solve_prints_rates_by_time_if_there_is_a_speed(run: Run) -> None:
 
 def test_show_steps_prints_the_newton_table(run: Run) -> None:
     text = run("solve", "cubic.toml", "--show-steps").stdout
-    assert text.startswith(CUBIC_STEPS)  # below, rounding shows
+    radius = text.partition("position within ")[2].split()[0]
+    assert 0.0 < float(radius) < 1e-14
+    assert text.startswith(CUBIC_STEPS.replace("RADIUS", radius))  # below, rounding shows
     assert "\n  5  -1.769292354  0.00e+00\n" in text
     first = text[text.index("\n  k = 0") :].split("\n\n")[0]
     assert first.split() == [

@@ -131,12 +131,14 @@ def lost() -> Reached:
         guess={"x": 1, "u": 1},
         inputs=lw.Input(variable="u", start=1, stop=-1, step=-0.5),
     )
-    (limit,) = mechanism.sweep().limits
-    assert 0 < limit.input < 1e-12
-    return mechanism.solve(at=-1), (
+    position = mechanism.solve(at=-1)
+    # where exactly the steps become too short is a matter of rounding
+    met = float(position.message.partition("met at u = ")[2].partition(")")[0])
+    assert 0 < met < 1e-12
+    return position, (
         "the branch could not be followed reliably up to this input value: ask for a value "
         "before the last one reached, or start from a guess beyond it "
-        f"(met at u = {limit.input:.10g}); other guesses also lead to no position there"
+        f"(met at u = {met:.10g}); other guesses also lead to no position there"
     )
 
 
@@ -175,6 +177,20 @@ def does_not_fit() -> Reached:
     )
 
 
+def root_not_proved() -> Reached:
+    # the steps end where (9/10)^k has made the residual smaller than its tolerance, far from 0
+    mechanism = plain("x^10 = 0", x=1)
+    position = mechanism.solve()
+    x, residual = position.unknowns["x"], position.residual * 10.0
+    assert 0.0 < x < 0.1
+    return position, (
+        "the residual is small, but no root is proved, it is a multiple root or none: start from "
+        "another guess, or write the equation so that the root is simple (the residual is "
+        f"{residual:.2g}; the steps shrink as near a root of order 10: if there is one, it lies at "
+        f"about x = {x:.10g} ± {x:.2g}); other guesses also lead to no position there"
+    )
+
+
 CASES: dict[lw.Status, Callable[[], Reached]] = {
     lw.Status.CONVERGED: converged,
     lw.Status.SINGULAR_JACOBIAN: singular_jacobian,
@@ -188,6 +204,7 @@ CASES: dict[lw.Status, Callable[[], Reached]] = {
     lw.Status.LOST: lost,
     lw.Status.DOES_NOT_FIT: does_not_fit,
     lw.Status.NO_START: no_start,
+    lw.Status.ROOT_NOT_PROVED: root_not_proved,
 }
 
 

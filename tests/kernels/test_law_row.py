@@ -12,9 +12,10 @@ from flint import arb, ctx
 from linkwork.equations.cam_program import program
 from linkwork.equations.outline import Outline
 from linkwork.kernels.law_row import LawRow
-from linkwork.kernels.loop_table import LoopTable, TableSplitter
+from linkwork.kernels.loop_table import LoopTable
 from linkwork.kernels.phasor_rows import PhasorRows
 from linkwork.kernels.real_rows import LinearRows
+from linkwork.kernels.table_splitter import TableSplitter
 from linkwork.numerics.proof.kantorovich import weighted_radii
 from tests.numerics.proof_bounds import bounds
 from tests.oracles.ball_laws import ball_jet

@@ -580,7 +580,7 @@ def test_several_inputs_have_limit_rows_in_lock_step() -> None:
         assert motion.certified[row]
 
 
-def test_plain_equations_have_dead_points_without_proofs() -> None:
+def test_plain_equations_have_dead_points_with_proofs() -> None:
     mechanism = lw.plain_equations(
         equations={"1": "x^2 + y^2 = 4", "2": "y = t"},
         guess={"x": 1.9, "y": 0.5, "t": 0.5},
@@ -588,7 +588,7 @@ def test_plain_equations_have_dead_points_without_proofs() -> None:
     )
     motion = mechanism.sweep(through=True, limits_of=["x"])
     assert [limit.input for limit in motion.limits] == pytest.approx([-2, 2], abs=1e-12)
-    assert not motion.certified.any()
+    assert motion.certified[motion.found].all()
     assert motion.circuit is CircuitEnd.CLOSED
     names = np.array(motion.branch)
     second = names == "circuit 1 branch 2"

@@ -72,6 +72,13 @@ class Cubic:
     def curvature(self, v: Array, matrix: Array) -> NoReturn:
         raise NotImplementedError("a cubic bends without bound")
 
+    @property
+    def is_enclosed(self) -> bool:
+        return False
+
+    def enclosure(self, v: Array, box: Array) -> NoReturn:
+        raise NotImplementedError("a cubic is not enclosed")
+
 
 #: (loop, coefficient, angle variable or None)
 Term = tuple[int, complex, int | None]

@@ -353,8 +353,8 @@ def test_two_dead_points_that_nearly_meet_are_both_seen(apart: float, start: flo
     places = sorted(float(turn.v[0]) for turn in found.turns)
     half = apart / 2.0
     assert places == pytest.approx([-1, -half, -half, half, half, 1], abs=1e-4 * apart)
-    # plain equations have no known bound of their curvature: nothing is proved
-    assert not any(turn.located for turn in found.turns)
+    # proved to rounding: derivatives of formulas are enclosed over boxes
+    assert all(turn.located for turn in found.turns)
 
 
 # ------------------------------------------------------------------ other curves

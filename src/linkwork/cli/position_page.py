@@ -18,6 +18,7 @@ from linkwork.results.listing.position_listing import (
     changes_text,
     inputs_text,
     listed_links,
+    radius_measure,
     redundant_lines,
     system_columns,
     trail_columns,
@@ -126,12 +127,13 @@ def _evidence(mechanism: Mechanism, position: Position) -> Iterator[tuple[str, s
     yield "residual", significant(position.residual, 2) + residual_measure(mechanism)
     yield "iterations", str(position.iterations)
     yield "condition", significant(position.condition, 3)
-    without = ""
+    without, equations = "", mechanism.loop_equations
     if position.certificate.certification is Certification.SUBSET_CERTIFIED:
         without = f"; without {listed_links(position.redundant)}"
     yield (
         "certificate",
-        certificate_text(position.certificate, residual_measure(mechanism)) + without,
+        certificate_text(position.certificate, radius_measure(equations.loops, equations.real))
+        + without,
     )
     yield from redundant_lines(position.redundant)
 

@@ -18,10 +18,11 @@ from linkwork.foundation.elementwise import display_value
 from linkwork.foundation.errors import MechanismError, Problem
 from linkwork.foundation.names import canonical
 from linkwork.kernels.law_row import LawRow
-from linkwork.kernels.loop_table import LoopTable, TableSplitter
+from linkwork.kernels.loop_table import LoopTable
 from linkwork.kernels.phasor_rows import PhasorRows
 from linkwork.kernels.real_rows import LinearRows
 from linkwork.kernels.single.quick_rows import quick_rows
+from linkwork.kernels.table_splitter import TableSplitter
 from linkwork.numerics.block_solver import Block, BlockSolver
 from linkwork.numerics.decomposition import BlockForm, block_form
 

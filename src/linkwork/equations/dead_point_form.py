@@ -16,7 +16,8 @@ from linkwork.equations.directions import (
 from linkwork.equations.parametrized_table import ParametrizedTable
 from linkwork.foundation.arrays import Array, ComplexArray, IndexArray
 from linkwork.foundation.elementwise import phase
-from linkwork.kernels.loop_table import LoopTable, TableSplitter
+from linkwork.kernels.loop_table import LoopTable
+from linkwork.kernels.table_splitter import TableSplitter
 from linkwork.numerics.block_solver import BlockSolver
 from linkwork.numerics.continuation.branch_tracking import InputPath
 from linkwork.numerics.homotopy.dead_point_system import DeadPointSystem, Slot

@@ -5,8 +5,9 @@ from __future__ import annotations
 import numpy as np
 
 from linkwork.foundation.arrays import IndexArray
-from linkwork.kernels.loop_table import LoopTable, TableSplitter
+from linkwork.kernels.loop_table import LoopTable
 from linkwork.kernels.single.quick_rows import quick_rows
+from linkwork.kernels.table_splitter import TableSplitter
 from linkwork.numerics.block_solver import Block, BlockSolver
 from linkwork.numerics.decomposition import block_form
 

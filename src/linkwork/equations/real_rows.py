@@ -6,7 +6,8 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from linkwork.expression.jets import Jet, evaluate
+from linkwork.expression.enclosures import ENCLOSURES, Enclosure, Interval
+from linkwork.expression.jets import Jet, evaluate, evaluate_by
 from linkwork.expression.tree import Node
 from linkwork.foundation.angles import AngleUnit
 from linkwork.foundation.arrays import Array
@@ -59,3 +60,29 @@ class FormulaRow:
     def repeats_after(self, turns: Array) -> bool:
         """Whether the formula is unaffected by whole turns (k,), as far as known."""
         return not turns.any()
+
+    def enclosure(self, v: Array, box: Array) -> tuple[Array, Array]:
+        """Lowest and highest value (2, L), and derivatives (2, L, k), over boxes around v (L, N)
+        with half widths ``box`` (L, N).
+        """
+        names: dict[str, Enclosure] = {}
+        for place, (name, k) in enumerate(zip(self.names, self.variables, strict=True)):
+            way = np.eye(len(self.variables))[:, place, None]
+            own = Interval(v[:, k], v[:, k]) + Interval(-box[:, k], box[:, k])
+            # without a width a variable has its value exactly
+            exact = box[:, k] == 0.0
+            own = Interval(np.where(exact, v[:, k], own.low), np.where(exact, v[:, k], own.high))
+            names[name] = Enclosure(own, Interval(way, way))
+        for name, number in self.constants:
+            # dimensions may be results of formulas
+            whole = float(number).is_integer()
+            names[name] = (ENCLOSURES.literal if whole else ENCLOSURES.rounded)(number)
+        with np.errstate(all="ignore"):
+            left, right = (
+                evaluate_by(ENCLOSURES, side, names, self.unit) for side in (self.left, self.right)
+            )
+            found = left - right
+        shape = len(self.variables), len(v)
+        value = [np.broadcast_to(end, len(v)) for end in (found.v.low, found.v.high)]
+        slopes = [np.broadcast_to(end, shape).T for end in (found.d.low, found.d.high)]
+        return np.stack(value), np.stack(slopes)

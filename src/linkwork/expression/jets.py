@@ -9,6 +9,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
+from typing import Generic, TypeVar
 
 import numpy as np
 
@@ -18,7 +19,9 @@ from linkwork.foundation.angles import AngleUnit
 from linkwork.foundation.arrays import AnyArray, Array
 from linkwork.foundation.operand import Arithmetic, Operand
 
-__all__ = ["Jet", "evaluate"]
+__all__ = ["Functions", "Jet", "evaluate", "evaluate_by"]
+
+T = TypeVar("T", bound=Operand)
 
 
 class _JetArithmetic(Arithmetic["Jet"]):
@@ -175,16 +178,6 @@ def _chosen(least: bool) -> Callable[..., Jet]:
     return choose
 
 
-_PLAIN: dict[str, Callable[..., Jet]] = {
-    "sqrt": _sqrt, "exp": _exp, "ln": _ln, "log10": _log10, "abs": abs, "hypot": _hypot,
-    "min": _chosen(least=True), "max": _chosen(least=False),
-}  # fmt: skip
-_OF_ANGLE: dict[str, Callable[[Jet], Jet]] = {"sin": _sin, "cos": _cos, "tan": _tan}
-_TO_ANGLE: dict[str, Callable[..., Jet]] = {
-    "asin": _asin, "acos": _acos, "atan": _atan, "atan2": _atan2,
-}  # fmt: skip
-
-
 _COMPARISONS: dict[str, Callable[..., Array]] = {
     "<": np.less, "<=": np.less_equal, ">": np.greater, ">=": np.greater_equal,
 }  # fmt: skip
@@ -197,23 +190,55 @@ def _compared(operator: str, left: Jet, right: Jet) -> Jet:
     return Jet(np.where(np.isnan(left.v + right.v), np.nan, holds), zero, zero)
 
 
+@dataclass(frozen=True)
+class Functions(Generic[T]):
+    """How formulas are evaluated in one arithmetic.
+
+    ``literal``: a number as written; ``rounded``: one such as π, which is no float. ``plain``,
+    ``of_angle``, ``to_angle``: functions by name; ``compared``: comparisons, if there are any.
+    """
+
+    literal: Callable[[float], T]
+    rounded: Callable[[float], T]
+    plain: Mapping[str, Callable[..., T]]
+    of_angle: Mapping[str, Callable[[T], T]]
+    to_angle: Mapping[str, Callable[..., T]]
+    compared: Callable[[str, T, T], T] | None = None
+
+
+_FUNCTIONS: Functions[Jet] = Functions(
+    literal=Jet.constant,
+    rounded=Jet.constant,
+    plain={
+        "sqrt": _sqrt, "exp": _exp, "ln": _ln, "log10": _log10, "abs": abs, "hypot": _hypot,
+        "min": _chosen(least=True), "max": _chosen(least=False),
+    },
+    of_angle={"sin": _sin, "cos": _cos, "tan": _tan},
+    to_angle={"asin": _asin, "acos": _acos, "atan": _atan, "atan2": _atan2},
+    compared=_compared,
+)  # fmt: skip
+
+
 def evaluate(node: Node, names: Mapping[str, Jet], unit: AngleUnit) -> Jet:
     """The jet of a formula; all its names must be in ``names`` (checked by the reader).
 
     Outside a function's domain the entries are NaN, which a solver reports as a status.
     """
+    return evaluate_by(_FUNCTIONS, node, names, unit)
+
+
+def evaluate_by(by: Functions[T], node: Node, names: Mapping[str, T], unit: AngleUnit) -> T:
+    """A formula in any arithmetic; see :func:`evaluate`."""
     match node:
         case Number():
-            return Jet.constant(node.value)
+            return by.literal(node.value)
         case Name():
-            if node.name in names:
-                return names[node.name]
-            return Jet.constant(CONSTANTS[node.name])
+            return names[node.name] if node.name in names else by.rounded(CONSTANTS[node.name])
         case Negative():
-            return -evaluate(node.operand, names, unit)
+            return -evaluate_by(by, node.operand, names, unit)
         case Binary():
-            left = evaluate(node.left, names, unit)
-            right = evaluate(node.right, names, unit)
+            left = evaluate_by(by, node.left, names, unit)
+            right = evaluate_by(by, node.right, names, unit)
             match node.operator:
                 case "+":
                     return left + right
@@ -226,11 +251,12 @@ def evaluate(node: Node, names: Mapping[str, Jet], unit: AngleUnit) -> Jet:
                 case "^":
                     return left**right
                 case _:
-                    return _compared(node.operator, left, right)
+                    assert by.compared is not None  # plain equations do not compare
+                    return by.compared(node.operator, left, right)
         case Call():
-            arguments = [evaluate(a, names, unit) for a in node.arguments]
-            if node.function in _OF_ANGLE:
-                return _OF_ANGLE[node.function](arguments[0] * unit.radians)
-            if node.function in _TO_ANGLE:
-                return _TO_ANGLE[node.function](*arguments) / unit.radians
-            return _PLAIN[node.function](*arguments)
+            arguments = [evaluate_by(by, a, names, unit) for a in node.arguments]
+            if node.function in by.of_angle:
+                return by.of_angle[node.function](arguments[0] * by.rounded(unit.radians))
+            if node.function in by.to_angle:
+                return by.to_angle[node.function](*arguments) / by.rounded(unit.radians)
+            return by.plain[node.function](*arguments)

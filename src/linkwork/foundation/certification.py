@@ -24,7 +24,7 @@ class Certification(CodedEnum):
     )
     NOT_ASKED = "certificates were switched off"
     NO_POSITION = "there is no position to certify"
-    NO_BOUND = "plain equations have no known bound on their curvature, so there is no proof"
+    NO_BOUND = "no bounds of these equations are known, so there is no proof"
     POSITION_NOT_PROVED = (
         "too close to a singular position: rounding errors exceed the margin of the proof"
     )

@@ -57,6 +57,10 @@ class Status(CodedEnum):
         "change its length, or leave the link out"
     )
     NO_START = "no position was found at the guess, so there is no motion to follow: see the start"
+    ROOT_NOT_PROVED = (
+        "the residual is small, but no root is proved, it is a multiple root or none: "
+        "start from another guess, or write the equation so that the root is simple"
+    )
 
     @property
     def ok(self) -> bool:

@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Protocol
+from typing import Protocol, runtime_checkable
 
 import numpy as np
 
 from linkwork.foundation.arrays import Array, IndexArray
 
-__all__ = ["FunctionRow", "LinearRows", "hessian_of"]
+__all__ = ["EnclosedRow", "FunctionRow", "LinearRows", "hessian_of"]
 
 
 class FunctionRow(Protocol):
@@ -30,6 +30,16 @@ class FunctionRow(Protocol):
 
     def repeats_after(self, turns: Array) -> bool:
         """Whether ``variables`` (k,) moved by these whole turns are known to satisfy the same."""
+
+
+@runtime_checkable
+class EnclosedRow(FunctionRow, Protocol):
+    """A row that is known over boxes."""
+
+    def enclosure(self, v: Array, box: Array) -> tuple[Array, Array]:
+        """Lowest and highest value (2, B), and derivatives by ``variables`` (2, B, k), over boxes
+        around v (B, N) with half widths ``box`` (B, N).
+        """
 
 
 def hessian_of(row: FunctionRow, v: Array) -> Array:

@@ -177,9 +177,8 @@ def _rows_followed(
         if found is not None:
             report.proved(1.0)
             return found
-    provable = all(block.system.has_curvature_bound for block in drive.solver.blocks)
     # without proofs nothing would show that a bold track has left its branch
-    tries = (BOLD, None) if certify and provable else (None,)
+    tries = (BOLD, None) if certify and drive.solver.is_provable else (None,)
     for care in tries:
         track = _covering(drive, anchor, asked.t, care, report, passage)
         placed = _place_rows(track, asked.t, drive.free)

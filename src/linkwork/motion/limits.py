@@ -9,12 +9,14 @@ from typing import Protocol
 
 import numpy as np
 
+from linkwork.equations.parametrized_table import ParametrizedTable
 from linkwork.foundation.arrays import Array
 from linkwork.foundation.certification import Certification
 from linkwork.foundation.rounding import EPSILON
 from linkwork.foundation.status import Status
 from linkwork.motion.aligned_links import links_in_line
 from linkwork.motion.drive import Drive
+from linkwork.motion.locking_blocks import Lock, locks_ahead, sound_nodes
 from linkwork.motion.model import Model
 from linkwork.numerics.continuation.branch_tracking import End, Node, Track
 from linkwork.numerics.continuation.change_point import (
@@ -22,6 +24,7 @@ from linkwork.numerics.continuation.change_point import (
     Crossing,
     locate_change_point,
     most_singular,
+    singular_blocks,
 )
 from linkwork.numerics.continuation.curve_proof import same_solution
 from linkwork.numerics.continuation.local_parametrization import Parametrization
@@ -36,13 +39,13 @@ __all__ = [
     "end_at_change_point",
     "end_at_dead_point",
     "ends_of",
+    "kind_of_crossing",
 ]
 
 _MOVES = 1e-7  # weighted: a direction along which the input moves at all
-# Condition up to which a node is far enough from a dead point to begin the search for it. Nodes
-# must be proved up to 1e5 (motion.proving) and exist up to 3e6 (TrackOptions): a tenth of the first
-# leaves no doubt that this one is proved.
-_SOUND = 1e4
+# Ratio of singular values up to which a block locks with another: it grows with the root of the
+# distance from a dead point, so that sides that differ by rounding keep it below.
+_IN_LINE = 1e-6
 _TOUCHING = 1e-12  # residual at a located crossing, where Newton-Raphson must not take a step
 
 
@@ -110,9 +113,14 @@ def ends_of(drive: Drive, track: Track, certify: bool = False) -> tuple[BranchEn
 def _end(drive: Drive, nodes: Sequence[Node], end: End, side: float, certify: bool) -> BranchEnd:
     if end.status is not Status.START_SINGULAR:
         crossing = locate_change_point(drive.solver, drive.path, nodes[-1], side)
+        ahead = None if crossing is not None else _turn_ahead(drive, nodes, side)
+        if ahead is None or not ahead.located:
+            lock = locks_ahead(drive, nodes, side)
+            # another block may cross branches where one locks: the branch ends all the same
+            if lock is not None and (crossing is None or not _is_before(crossing, lock, side)):
+                return _locked_end(drive, lock, side, certify)
         if crossing is not None:
             return _crossing_end(drive, nodes, crossing, side, certify)
-        ahead = _turn_ahead(drive, nodes, side)
         if ahead is not None:
             return _dead_end(drive, nodes[-1], ahead, side, certify)
     edges = sorted((end.reached, end.failed))
@@ -130,13 +138,9 @@ def _end(drive: Drive, nodes: Sequence[Node], end: End, side: float, certify: bo
 
 
 def _turn_ahead(drive: Drive, nodes: Sequence[Node], side: float) -> TurnAhead | None:
-    """The dead point ahead of a track's last nodes.
-
-    First from a node that is proved with the others; rounding is worst at the very last ones.
-    """
-    sound = next((node for node in reversed(nodes) if node.nearness < _SOUND), nodes[-1])
+    """The dead point ahead of a track's last nodes."""
     best: TurnAhead | None = None
-    for last in (sound, nodes[-1]) if sound is not nodes[-1] else (sound,):
+    for last in sound_nodes(nodes):
         # the last nodes are ill-conditioned; a node somewhat earlier gives the same dead point
         ahead = turn_beyond(drive.leads, last.v, last.first, side)
         if ahead is not None and (best is None or ahead.located):
@@ -144,6 +148,29 @@ def _turn_ahead(drive: Drive, nodes: Sequence[Node], side: float) -> TurnAhead |
         if best is not None and best.located:
             break
     return best
+
+
+def _is_before(crossing: ChangePoint, lock: Lock, side: float) -> bool:
+    """Whether a change point is met before blocks lock."""
+    ends = [sorted(side * edge for edge in place.bracket) for place in (crossing, lock)]
+    return ends[0][1] < ends[1][0]
+
+
+def _locked_end(drive: Drive, lock: Lock, side: float, certify: bool) -> BranchEnd:
+    """The end of a branch where blocks lock at one input, each proved by itself."""
+    low, high = lock.bracket
+    place = Crossing(
+        t=lock.t, v=lock.v, directions=np.empty((2, 0)), bracket=lock.bracket, located=True
+    )
+    return BranchEnd(
+        side=side,
+        limit=_locate_limit(drive, place, LimitKind.DEAD_POINT, _locking(drive, lock.v)),
+        t=lock.t,
+        slack=max(high - lock.t, lock.t - low),
+        v=_touching(drive, lock.v),
+        first=np.full(len(lock.v), np.nan),
+        certification=Certification.POSITION_NOT_PROVED if certify else Certification.NOT_ASKED,
+    )
 
 
 def _dead_end(drive: Drive, last: Node, ahead: TurnAhead, side: float, certify: bool) -> BranchEnd:
@@ -180,9 +207,7 @@ def end_at_dead_point(
     if not certify:
         return found
     if turn.proof is None:
-        bounded = all(block.system.has_curvature_bound for block in drive.solver.blocks)
-        why = Certification.POSITION_NOT_PROVED if bounded else Certification.NO_BOUND
-        return replace(found, certification=why)
+        return replace(found, certification=Certification.POSITION_NOT_PROVED)
     return replace(
         found,
         certification=Certification.CERTIFIED if joined else Certification.MOTION_NOT_PROVED,
@@ -197,9 +222,20 @@ def dead_point_limit(drive: Drive, turn: TurningPoint) -> Limit:
 
 
 def _locking(drive: Drive, v: Array) -> tuple[int, ...]:
-    """The number of the block that locks at a position (N,), if one does."""
+    """The numbers of the blocks that lock at a position (N,): the one nearest to a singular
+    position, and those that are as good as singular, too.
+    """
     block = most_singular(drive.solver, v)
-    return () if block is None else (block,)
+    if block is None:
+        return ()
+    return tuple(sorted({block, *singular_blocks(drive.solver, v, _IN_LINE)}))
+
+
+def kind_of_crossing(leads: ParametrizedTable, crossing: Crossing) -> LimitKind:
+    """Where curves cross along both of which the input turns back, several blocks lock at once."""
+    p = leads.parameter
+    moves = np.abs(crossing.directions[:, p] / leads.scale[p]) > _MOVES
+    return LimitKind.CHANGE_POINT if moves.any() else LimitKind.DEAD_POINT
 
 
 def change_point_limit(drive: Drive, crossing: Crossing) -> Limit:
@@ -245,7 +281,7 @@ def end_at_change_point(
 
     ``v``, ``first`` (N,): the position, and its derivatives on the branch that was followed.
     """
-    solver, model, t = drive.solver, drive.model, crossings[0].t
+    model, t = drive.model, crossings[0].t
     low = min(crossing.bracket[0] for crossing in crossings)
     high = max(crossing.bracket[1] for crossing in crossings)
     place = Crossing(
@@ -261,12 +297,6 @@ def end_at_change_point(
     for crossing in crossings:
         onward |= _rates(model, crossing.onward)
         other |= _rates(model, crossing.other)
-    done = solver.solve(
-        # J is singular here: a step of Newton-Raphson would lead away, so only residuals are
-        # checked
-        v[None, :],
-        replace(solver.options, equation_tolerance=_TOUCHING, max_steps=8),
-    )
     return BranchEnd(
         side=side,
         limit=replace(
@@ -274,11 +304,21 @@ def end_at_change_point(
         ),
         t=t,
         slack=max(high - t, t - low),
-        v=done.v[0] if done.status[0] == Status.CONVERGED.code else None,
+        v=_touching(drive, v),
         first=first,
         crossings=crossings,
         certification=Certification.POSITION_NOT_PROVED if certify else Certification.NOT_ASKED,
     )
+
+
+def _touching(drive: Drive, v: Array) -> Array | None:
+    """A position (N,) at which blocks are singular, if all equations hold there."""
+    done = drive.solver.solve(
+        # a step of Newton-Raphson would lead away, so only residuals are checked
+        v[None, :],
+        replace(drive.solver.options, equation_tolerance=_TOUCHING, max_steps=8),
+    )
+    return done.v[0] if done.status[0] == Status.CONVERGED.code else None
 
 
 class _EndPlace(Protocol):

@@ -4,11 +4,12 @@ from __future__ import annotations
 
 import numpy as np
 
-from linkwork.foundation.arrays import BoolArray
+from linkwork.foundation.arrays import BoolArray, IndexArray
 from linkwork.foundation.certification import Certification
 from linkwork.foundation.status import Status
 from linkwork.motion.model import Model
 from linkwork.motion.named_quantities import name_series
+from linkwork.motion.proving import roots_proved
 from linkwork.motion.redundancy import FITS, has_corners, largest_misfits, misfit
 from linkwork.numerics.rows import SolvedRows
 from linkwork.results.motion import Limit, Motion
@@ -53,15 +54,25 @@ def motion_of_rows(model: Model, rows: SolvedRows, message: str, added: BoolArra
 
 
 def fitting(model: Model, rows: SolvedRows) -> SolvedRows:
-    """Rows at which redundant links fit; the others have no position."""
+    """Rows with evidence of a position: roots of formulas are proved, redundant links fit."""
+    if model.compiled.solver.has_formulas:
+        open_ = np.flatnonzero((rows.status == Status.CONVERGED.code) & np.isnan(rows.radius))
+        lost = open_[~roots_proved(model.compiled.solver, rows.v[open_])]
+        rows = _without(rows, lost, Status.ROOT_NOT_PROVED)
     if has_corners(model.equations):
         rows = rows.demote(Certification.MOTION_NOT_PROVED)
     if not model.equations.redundant:
         return rows
     fits = misfit(model.equations, rows.v) <= FITS
-    lost = (rows.status == Status.CONVERGED.code) & ~fits
-    nothing = SolvedRows.blank(rows.inputs[lost], rows.v.shape[1], Status.DOES_NOT_FIT)
-    return rows.put(np.flatnonzero(lost), nothing).demote(Certification.SUBSET_CERTIFIED)
+    lost = np.flatnonzero((rows.status == Status.CONVERGED.code) & ~fits)
+    rows = _without(rows, lost, Status.DOES_NOT_FIT)
+    return rows.demote(Certification.SUBSET_CERTIFIED)
+
+
+def _without(rows: SolvedRows, lost: IndexArray, status: Status) -> SolvedRows:
+    """The rows without the positions of some, all for one reason."""
+    nothing = SolvedRows.blank(rows.inputs[lost], rows.v.shape[1], status)
+    return rows.put(lost, nothing)
 
 
 def message_of(motion: Motion, model: Model) -> str:

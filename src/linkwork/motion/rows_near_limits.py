@@ -114,16 +114,15 @@ def _passed_row(
 def _row_at(drive: Drive, v: Array, certify: bool) -> tuple[SolvedRows, Proof | None]:
     """A position (N,) as a row, not proved yet; its proof, ``None`` if there is none."""
     solver, here = drive.solver, v[None, :]
-    bounded = all(block.system.has_curvature_bound for block in solver.blocks)
-    why = Certification.POSITION_NOT_PROVED if bounded else Certification.NO_BOUND
+    why = Certification.POSITION_NOT_PROVED if certify else Certification.NOT_ASKED
     row = solver.rates(here, drive.path.rate).with_columns(
         status=np.array([Status.CONVERGED.code], dtype=np.int8),
         residual=solver.residual(here),
-        certification=np.array([(why if certify else Certification.NOT_ASKED).code], dtype=np.int8),
+        certification=np.array([why.code], dtype=np.int8),
         radius=np.array([np.nan]),
         uniqueness_radius=np.array([np.nan]),
     )
-    if not (certify and bounded):
+    if not (certify and solver.is_provable):
         return row, None
     proof = prove(solver, here, 4.0 * EPSILON * np.abs(here[:, solver.unknowns :]))
     return row, proof if proof.holds[0] else None

@@ -23,6 +23,7 @@ from linkwork.motion.positions import (
     position_of,
     target_values,
 )
+from linkwork.motion.proving import roots_proved
 from linkwork.motion.redundancy import FITS, lengths_found, misfit, without_redundant
 from linkwork.motion.start import Start, first_position
 from linkwork.numerics.newton import NewtonOptions
@@ -94,6 +95,10 @@ def solve(
         reached = following.follow_to_value(model, start.v, target, certify)
         if isinstance(reached, following.OutOfReach):
             position = failed_position(model, target, reached.status, reached.failure, start)
+        elif reached.status.ok and not roots_proved(model.compiled.solver, reached.v[None, :])[0]:
+            failure = why.root_not_proved(model, start.v, reached.v, options)
+            last = replace(start, v=reached.v, residual=reached.residual)
+            position = failed_position(model, target, Status.ROOT_NOT_PROVED, failure, last)
         else:
             reached = replace(reached, iterations=start.iterations + reached.iterations)
             position = _position(model, target, reached, start)
@@ -116,8 +121,6 @@ def _arrived(model: Model, start: Start, certify: bool) -> SolvedPosition:
 def _certificate(model: Model, v: Array) -> Certificate:
     """Of one position (N,) that nothing was followed to."""
     solver = model.compiled.solver
-    if not all(block.system.has_curvature_bound for block in solver.blocks):
-        return Certificate(certification=Certification.NO_BOUND)
     proof = prove(solver, v[None, :], rounding_of_inputs(v[None, :], solver.unknowns))
     if not proof.holds[0]:
         return Certificate(certification=Certification.POSITION_NOT_PROVED)
@@ -147,9 +150,13 @@ def _other_root(model: Model, found: Array) -> Failure | None:
 def failed_position(
     model: Model, target: Array, status: Status, failure: Failure | None, start: Start
 ) -> Position:
-    """No position at the values (p,), in file units, with the reason and the iterates."""
+    """No position at the values (p,), in file units, with the reason and the iterates.
+
+    Where formulas are small without a proof of a root, the unknowns are those of the last iterate.
+    """
     nothing = np.full((1, model.compiled.solver.variables), np.nan)
-    named = name_series(model, nothing, nothing, nothing, target[None, :], np.zeros(1, dtype=bool))
+    v = start.v[None, :] if status is Status.ROOT_NOT_PROVED else nothing
+    named = name_series(model, v, nothing, nothing, target[None, :], np.array([v is not nothing]))
     evidence = Evidence(
         status=status,
         message=status.value if failure is None else failure.message,
@@ -160,7 +167,7 @@ def failed_position(
         trails=start.trails,
         failure=failure,
     )
-    return position_of(model, named, 0, evidence, nothing[0, : model.compiled.solver.unknowns])
+    return position_of(model, named, 0, evidence, v[0, : model.compiled.solver.unknowns])
 
 
 def _does_not_fit(model: Model, v: Array) -> Failure:

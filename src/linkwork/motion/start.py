@@ -10,6 +10,7 @@ from linkwork.foundation.arrays import Array
 from linkwork.foundation.status import Status
 from linkwork.motion import failure as why
 from linkwork.motion.model import Model
+from linkwork.motion.proving import roots_proved
 from linkwork.numerics.newton import NewtonOptions, Watch
 from linkwork.results.failure import Failure
 from linkwork.results.position import NewtonStep, NewtonTrail
@@ -56,6 +57,10 @@ def first_position(
     failure = None
     if not status.ok and explained:
         status, failure = why.no_position(model, v, status, int(done.failed_block[0]), options)
+    if status.ok and not roots_proved(solver, done.v)[0]:
+        status = Status.ROOT_NOT_PROVED
+        if explained:
+            failure = why.root_not_proved(model, v, done.v[0], options)
     trails = []
     for k, watcher in enumerate(watchers):
         if watcher.steps:

@@ -86,6 +86,17 @@ class BlockSolver:
         return found if len(found) == len(self.blocks) else []
 
     @cached_property
+    def is_provable(self) -> bool:
+        """Whether proofs know a bound for every block: of its curvature, or of its slopes."""
+        systems = [block.system for block in self.blocks]
+        return all(system.has_curvature_bound or system.is_enclosed for system in systems)
+
+    @cached_property
+    def has_formulas(self) -> bool:
+        """Whether a block has equations of any formula, whose small residuals say little."""
+        return any(block.system.is_enclosed for block in self.blocks)
+
+    @cached_property
     def _share(self) -> float:
         """Of the work of a whole row, that of one block."""
         works = [_CALL + block.one.work for block in self.singles]

@@ -63,6 +63,15 @@ class System(SmallSystem, Protocol):
     def has_curvature_bound(self) -> bool:
         """Whether :meth:`curvature` gives a bound."""
 
+    @property
+    def is_enclosed(self) -> bool:
+        """Whether :meth:`enclosure` gives bounds."""
+
+    def enclosure(self, v: Array, box: Array) -> tuple[Array, Array]:
+        """Lowest and highest F, (2, B, m), and dF/dv, (2, B, m, N), over boxes around v (B, N)
+        with half widths ``box`` (B, N), with all rounding.
+        """
+
     def curvature(self, v: Array, matrix: Array) -> Curvature:
         """Moduli of the second derivatives multiplied by a matrix (B, n, m)."""
 

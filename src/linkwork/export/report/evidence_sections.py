@@ -14,7 +14,7 @@ from linkwork.export.report.template import Template
 from linkwork.foundation.certification import Certification
 from linkwork.results.listing.motion_listing import evidence_fields
 from linkwork.results.listing.number_text import significant
-from linkwork.results.listing.position_listing import certificate_text
+from linkwork.results.listing.position_listing import certificate_text, radius_measure
 from linkwork.results.motion import Motion
 
 __all__ = ["file", "proof", "versions"]
@@ -32,13 +32,17 @@ def _measure(found: Findings) -> str:
     return " of the longest link" if found.model.equations.loops else ""
 
 
+def _radius(found: Findings) -> str:
+    return radius_measure(found.model.equations.loops, found.model.equations.real)
+
+
 def _positions(found: Findings) -> Iterator[str]:
     motion = found.motion
     if motion is None:
         if not found.position.status.ok:
             yield f"No position was found: {found.position.message}."
             return
-        certificate = certificate_text(found.position.certificate, _measure(found))
+        certificate = certificate_text(found.position.certificate, _radius(found))
         yield f"Certificate of the position: {certificate}."
         return
     there = int(motion.found.sum())
@@ -50,7 +54,7 @@ def _positions(found: Findings) -> Iterator[str]:
     if len(proved):
         yield (
             f"In each of these, a true position lies within {_largest(motion, proved)}"
-            f"{_measure(found)} of the computed one, no other lies near it, and the motion from "
+            f"{_radius(found)} of the computed one, no other lies near it, and the motion from "
             "the start to it stays on one branch."
         )
     for reason in Certification:

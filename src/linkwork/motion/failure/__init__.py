@@ -11,6 +11,7 @@ if TYPE_CHECKING:
         another_root as another_root,
         beyond_reach as beyond_reach,
         no_position as no_position,
+        root_not_proved as root_not_proved,
         without_circuit as without_circuit,
         without_start as without_start,
     )

@@ -12,7 +12,13 @@ from linkwork.foundation.arrays import Array
 from linkwork.foundation.newton_trouble import NewtonTrouble
 from linkwork.foundation.status import Status
 from linkwork.motion.failure.dyads import dyad_of
-from linkwork.motion.failure.newton_reasons import Miss, miss_of, root_beside_guess, trouble_of
+from linkwork.motion.failure.newton_reasons import (
+    Miss,
+    doubtful_root,
+    miss_of,
+    root_beside_guess,
+    trouble_of,
+)
 from linkwork.motion.failure.other_positions import (
     ElsewhereAt,
     block_positions,
@@ -31,6 +37,7 @@ from linkwork.motion.tracking import turns_freely
 from linkwork.numerics.block_solver import Block
 from linkwork.numerics.continuation.branch_tracking import InputPath
 from linkwork.numerics.newton import NewtonOptions
+from linkwork.numerics.proof.position_proof import prove, rounding_of_inputs
 from linkwork.results.failure import Failure
 from linkwork.results.motion import Limit
 from linkwork.results.quantity import Kind
@@ -39,6 +46,7 @@ __all__ = [
     "another_root",
     "beyond_reach",
     "no_position",
+    "root_not_proved",
     "without_circuit",
     "without_start",
 ]
@@ -92,6 +100,46 @@ def _explain(
         loops=_labels(model, block),
         trouble=trouble,
         meant=meant,
+    )
+
+
+def root_not_proved(model: Model, start: Array, found: Array, options: NewtonOptions) -> Failure:
+    """What is known where formulas are small at ``found`` (N,), reached from ``start`` (N,), and no
+    root is proved.
+    """
+    solver, status = model.compiled.solver, Status.ROOT_NOT_PROVED
+    proof = prove(solver, found[None, :], rounding_of_inputs(found[None, :], solver.unknowns))
+    block = solver.blocks[int(np.argmax(np.isinf(proof.existence_radius[0])))]
+    here = found.copy()
+    here[block.unknowns] = start[block.unknowns]
+    with np.errstate(all="ignore"):
+        known = doubtful_root(block, here, found, options)
+    values = found[block.unknowns]
+    names = list(_name_unknowns(model, block, values))
+
+    def within(sizes: Array) -> str:
+        return ", ".join(
+            f"{name} = {x:.10g} ± {size:.2g}"
+            for name, x, size in zip(names, values, sizes, strict=True)
+        )
+
+    # a box without a root that is smaller than the way to a multiple one says nothing of that
+    if known.free.all() and not (known.order and (known.away > known.free).any()):
+        why = f"no root exists for {within(known.free)}, which is proved"
+    elif known.order:
+        why = (
+            f"the steps shrink as near a root of order {known.order}: "
+            f"if there is one, it lies at about {within(known.away)}"
+        )
+    else:
+        at = ", ".join(f"{name} = {x:.10g}" for name, x in zip(names, values, strict=True))
+        why = f"near {at} no steps shrink as near a multiple root"
+    worst = np.abs(known.f).max(initial=0.0)
+    return _failure(
+        model,
+        found[solver.unknowns :],
+        what=f"{status.value} (the residual is {worst:.2g}; {why})",
+        loops=_labels(model, block),
     )
 
 

@@ -10,15 +10,18 @@ import numpy as np
 from linkwork.foundation.arrays import Array
 from linkwork.foundation.newton_trouble import NewtonTrouble
 from linkwork.foundation.status import Status
-from linkwork.motion.failure.other_positions import block_positions, distance
+from linkwork.motion.failure.other_positions import block_positions, distance, roots_in_block
 from linkwork.numerics.block_solver import Block
 from linkwork.numerics.least_squares import nearest_miss
 from linkwork.numerics.newton import NewtonOptions, newton
+from linkwork.numerics.proof.enclosed import excluded
 
-__all__ = ["Miss", "miss_of", "root_beside_guess", "trouble_of"]
+__all__ = ["DoubtfulRoot", "Miss", "doubtful_root", "miss_of", "root_beside_guess", "trouble_of"]
 
 _CLOSED = 1e-10  # scaled residual of a position
 _FLAT = 1e-8  # of its natural size: a slope or curvature that is zero
+_SHRINKS = 0.4  # ratio of steps from which on a root may be multiple: 1/2 for a double one
+_HIGHEST_ORDER = 100  # of a root that steps are taken to lead to
 _ASIDE = 0.5  # of the way from the root to the guess, where the bending is compared
 
 
@@ -42,7 +45,51 @@ def miss_of(block: Block, v: Array) -> Miss:
     """The block as near to closure as a damped iteration from v (N,) gets."""
     nearest, f = nearest_miss(block.system, v[block.variables])
     closed = np.isfinite(f).all() and np.abs(f / block.system.equation_scale).max() <= _CLOSED
+    if closed and block.system.is_enclosed:
+        closed = roots_in_block(block, nearest[None, :])[0]
     return Miss(v=nearest, f=f, closed=bool(closed))
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class DoubtfulRoot:
+    """Formulas that are small where no root is proved: ``f`` (m,) unscaled.
+
+    ``free``: half width (n,) of a box without a root, 0 if none is known. ``order`` of a multiple
+    root as the last steps of Newton-Raphson suggest, 0 if they do not; it would be at about
+    ``away`` (n,).
+    """
+
+    f: Array
+    free: Array
+    order: int
+    away: Array
+
+
+def doubtful_root(block: Block, start: Array, found: Array, options: NewtonOptions) -> DoubtfulRoot:
+    """What is known of a place ``found`` (N,) that Newton-Raphson reached from ``start`` (N,).
+
+    Near a root of order m steps shrink by 1 - 1/m, so that m times the next step leads there.
+    """
+    n, steps = len(block.unknowns), []
+    weights = block.system.variable_scale[:n]
+
+    def watch(_: int, x: Array, residual: Array, change: Array | None) -> None:
+        if change is not None:
+            steps.append(change[0])
+
+    newton(block.system, start[block.variables][None, :], options, watch)
+    order, away = 0, np.zeros(n)
+    if len(steps) > 1:
+        last, before = (float(np.abs(step / weights).max()) for step in (steps[-1], steps[-2]))
+        ratio = last / before
+        if _SHRINKS < ratio < 1.0 - 1.0 / _HIGHEST_ORDER:
+            order = round(1.0 / (1.0 - ratio))
+            away = order * ratio * np.abs(steps[-1])
+    here = found[block.variables]
+    free = excluded(block.system, here) * weights
+    return DoubtfulRoot(
+        f=block.system.residual(here[None, :])[0], free=free, order=order, away=away
+    )
 
 
 def trouble_of(

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -15,10 +15,18 @@ from linkwork.kernels.loop_table import LoopTable
 from linkwork.motion.assembly.assembling import positions_at
 from linkwork.motion.failure.dyads import dyad_of
 from linkwork.motion.model import Model
-from linkwork.numerics.block_solver import Block
+from linkwork.numerics.block_solver import Block, linearise_block
 from linkwork.numerics.newton import NewtonOptions, newton
+from linkwork.numerics.proof.position_proof import prove_block
 
-__all__ = ["Elsewhere", "ElsewhereAt", "block_positions", "distance", "positions_elsewhere"]
+__all__ = [
+    "Elsewhere",
+    "ElsewhereAt",
+    "block_positions",
+    "distance",
+    "positions_elsewhere",
+    "roots_in_block",
+]
 
 _STARTS = 192  # per block that is no dyad
 _MOST_BLOCKS = 8
@@ -115,7 +123,16 @@ def _solve_starts(block: Block, v: Array, starts: Array) -> tuple[Array, BoolArr
     done = newton(block.system, lanes, NewtonOptions(max_steps=40))
     # a small last step alone does not say that the equations hold
     good = (done.status == Status.CONVERGED.code) & (done.residual < 1e-10)
+    if block.system.is_enclosed:  # nor does a small residual
+        good[good] = roots_in_block(block, done.v[good])
     return done.v[good, :n], good
+
+
+def roots_in_block(block: Block, v: Array) -> BoolArray:
+    """Whether formulas are proved to have a root at positions v (B, N) of a block, (B,)."""
+    n = len(block.unknowns)
+    own = replace(block, unknowns=np.arange(n), variables=np.arange(v.shape[1]))
+    return prove_block(own, linearise_block(own, v), v, np.zeros_like(v)).holds
 
 
 def _starts(block: Block, guess: Array) -> Array:
@@ -138,7 +155,7 @@ def _starts(block: Block, guess: Array) -> Array:
 
 
 def _is_plain(block: Block) -> bool:
-    return not block.system.has_curvature_bound
+    return block.system.is_enclosed
 
 
 def _recurrence_root(n: int) -> float:

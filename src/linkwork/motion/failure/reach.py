@@ -13,6 +13,7 @@ from linkwork.equations.parametrized_table import ParametrizedTable
 from linkwork.foundation.arrays import Array
 from linkwork.foundation.circuit_end import CircuitEnd
 from linkwork.motion.curve_branches import TracedCurve
+from linkwork.motion.limits import kind_of_crossing
 from linkwork.motion.model import Model
 from linkwork.motion.tracking import turns_freely
 from linkwork.numerics.continuation.branch_tracking import BOLD, InputPath, TrackOptions, follow
@@ -229,5 +230,6 @@ def _edges(leads: ParametrizedTable, walk: TracedCurve) -> list[_Edge]:
     found += [_Edge(turn.t, "dead point", turn.bracket) for turn in walk.turns]
     crossing = walk.curve.crossing
     if crossing is not None:
-        found.append(_Edge(crossing.t, "change point"))
+        kind = kind_of_crossing(leads, crossing).word
+        found.append(_Edge(crossing.t, kind))
     return found

@@ -26,6 +26,7 @@ __all__ = [
     "locate_change_point",
     "locate_crossing",
     "most_singular",
+    "singular_blocks",
     "tangents_behind_kink",
 ]
 
@@ -328,6 +329,11 @@ def most_singular(solver: BlockSolver, v: Array) -> int | None:
     if not ratios or min(ratios) > _FAR:
         return None
     return int(np.argmin(ratios))
+
+
+def singular_blocks(solver: BlockSolver, v: Array, most: float = _FAR) -> list[int]:
+    """The blocks that are near a singular position at v (N,): up to this ratio."""
+    return [block for block, ratio in enumerate(_ratios(solver, v)) if ratio <= most]
 
 
 def _ratios(solver: BlockSolver, v: Array) -> Iterator[float]:

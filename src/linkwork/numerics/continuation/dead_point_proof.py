@@ -23,6 +23,7 @@ from linkwork.foundation.products import matrix_vector
 from linkwork.foundation.rounding import PROOF_SLACK, UNIT_ROUNDOFF
 from linkwork.numerics.block_solver import Block, BlockSolver, Linearised
 from linkwork.numerics.continuation.local_parametrization import Parametrization
+from linkwork.numerics.proof.enclosed import Enclosed
 from linkwork.numerics.proof.kantorovich import Expansion
 from linkwork.numerics.proof.position_proof import expansions, prove, reach
 
@@ -133,26 +134,50 @@ def _rate_errors(solver: BlockSolver, v: Array, rates: Array) -> _Errors | None:
         return None
     errors = np.zeros_like(rates)
     for block, part, at in zip(solver.blocks, linear, places, strict=True):
-        assert isinstance(at, Expansion)  # the position is proved, with arrays
-        found = _block_errors(block, part, at, v, rates, position.error_bound, errors)
+        here, box, d, known = (
+            x[:, block.variables] for x in (v, position.error_bound, rates, errors)
+        )
+        known[:, : len(block.unknowns)] = 0.0
+        if isinstance(at, Enclosed):
+            y, z = _terms_over_box(at, box, d, known)
+        else:
+            assert isinstance(at, Expansion)  # the position is proved, with arrays
+            y, z = _terms(block, part, at, here, box, d, known)
+        found = _block_errors(block, y, z)
         if found is None:
             return None
         errors[:, block.unknowns] = found
     return _Errors(error_bound=position.error_bound, rates=errors)
 
 
-def _block_errors(
+def _terms_over_box(at: Enclosed, box: Array, d: Array, known: Array) -> tuple[Array, Array]:
+    """As :func:`_terms`, from slopes enclosed over boxes (B, N)."""
+    n = at.matrix.shape[1]
+    centre, spread = at.slopes(box)
+    size = np.abs(centre) + spread
+    rounding = (d.shape[1] + 4) * UNIT_ROUNDOFF * matrix_vector(size, np.abs(d))
+    # eq. (39): |A J d| and |A J_k| |e_k|
+    y = np.abs(matrix_vector(centre, d)) + matrix_vector(spread, np.abs(d)) + rounding
+    own = np.abs(np.eye(n) - centre[:, :, :n]) + spread[:, :, :n]
+    w = np.broadcast_to(at.system.variable_scale[:n], y.shape)
+    return (y + matrix_vector(size, known)) * PROOF_SLACK, matrix_vector(own, w) * PROOF_SLACK
+
+
+def _terms(
     block: Block,
     part: Linearised,
     at: Expansion,
-    v: Array,
-    rates: Array,
-    error_bound: Array,
-    errors: Array,
-) -> Array | None:
-    """The errors of one block's rates (B, n), those of the blocks before in ``errors`` (B, N)."""
+    here: Array,
+    box: Array,
+    d: Array,
+    known: Array,
+) -> tuple[Array, Array]:
+    """y and Z times the weights, (B, n) each, with e ≤ y + Z e for the errors e of a block's rates.
+
+    ``here``, ``box``, ``d`` (B, N): its variables, how far they may be off, and their rates;
+    ``known``: the errors of the rates of its known variables, 0 for its own.
+    """
     n, system = len(block.unknowns), block.system
-    here, box, d = (x[:, block.variables] for x in (v, error_bound, rates))
     bend = _Bend(at.phase, at.slide, at.weights, at.pair_length, at.pair_group)
     # |A J d|: as computed, the rounding of J, and that of the products
     size, along = np.abs(part.inverse), np.abs(d)
@@ -163,17 +188,20 @@ def _block_errors(
         size, slip
     )
     y += bend.between(box, along)
-    known = errors[:, block.variables]
-    known[:, :n] = 0.0
     # eq. (39): |A J_k| |e_k|
     y = (y + matrix_vector(at.slope, known[:, n:]) + bend.between(box, known)) * PROOF_SLACK
-    # e ≤ y + Z e, in the block's weights
     w = system.variable_scale[:n]
     unit = np.zeros_like(d)
     unit[:, :n] = w
     z = (
         matrix_vector(at.defect, np.broadcast_to(w, y.shape)) + bend.between(box, unit)
     ) * PROOF_SLACK
+    return y, z
+
+
+def _block_errors(block: Block, y: Array, z: Array) -> Array | None:
+    """The errors of one block's rates, (B, n), from e ≤ y + Z e in its weights."""
+    w = block.system.variable_scale[: len(block.unknowns)]
     room = 1.0 - (z / w).max(axis=1)
     if not (room > 0.0).all():
         return None

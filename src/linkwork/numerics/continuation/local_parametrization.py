@@ -57,8 +57,8 @@ class Parametrization:
 
     @property
     def provable(self) -> bool:
-        """Whether the equations have known bounds of their curvature."""
-        return all(block.system.has_curvature_bound for block in self.solver.blocks)
+        """Whether proofs know bounds for the equations."""
+        return self.solver.is_provable
 
     def node(self, v: Array) -> Node:
         """The node of a position (N,) given in the whole's order."""

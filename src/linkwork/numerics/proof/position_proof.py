@@ -15,6 +15,7 @@ import numpy as np
 from linkwork.foundation.arrays import Array, BoolArray
 from linkwork.foundation.rounding import UNIT_ROUNDOFF
 from linkwork.numerics.block_solver import Block, BlockSolver, Linearised
+from linkwork.numerics.proof.enclosed import Enclosed
 from linkwork.numerics.proof.kantorovich import (
     Expansion,
     Majorant,
@@ -46,8 +47,8 @@ __all__ = [
 ]
 
 
-#: The data of a block at some positions; ``None`` without a curvature bound.
-Place = Expansion | SingleExpansions | None
+#: The data of a block at some positions; ``None`` where no bounds are known.
+Place = Expansion | SingleExpansions | Enclosed | None
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -94,7 +95,7 @@ def expansions(
     """The data that proofs need of positions v (B, N), block by block.
 
     ``exact``: see :func:`~linkwork.numerics.proof.kantorovich.expansion`. ``None`` for a block
-    without a curvature bound (function rows).
+    without known bounds.
     """
     if linear is None and solver.is_proved_singly(len(v)):
         return list(expand_rows(solver, v, exact=exact))
@@ -102,14 +103,19 @@ def expansions(
     found: list[Place] = []
     with np.errstate(all="ignore"):
         for block, part in zip(solver.blocks, parts, strict=True):
-            here = v[:, block.variables]
-            bounded = block.system.has_curvature_bound
-            found.append(
-                expansion(block.system, here, part.jacobian, part.inverse, exact=exact)
-                if bounded
-                else None
-            )
+            found.append(_place(block, part, v, exact=exact))
     return found
+
+
+def _place(
+    block: Block, part: Linearised, v: Array, *, exact: bool = False
+) -> Expansion | Enclosed | None:
+    system, here = block.system, v[:, block.variables]
+    if system.has_curvature_bound:
+        return expansion(system, here, part.jacobian, part.inverse, exact=exact)
+    if system.is_enclosed:
+        return Enclosed(system=system, v=here, matrix=part.inverse)
+    return None
 
 
 def prove(
@@ -130,7 +136,7 @@ def prove(
 
     Notes
     -----
-    A block without a curvature bound (function rows) proves nothing: ``holds`` is false.
+    A block without known bounds proves nothing: ``holds`` is false.
     """
     places = expansions(solver, v) if places is None else places
     singly = rows_of(places)
@@ -143,7 +149,7 @@ def prove(
     existence_radius = np.full((count, len(solver.blocks)), np.inf)
     uniqueness_radius = np.zeros((count, len(solver.blocks)))
     for k, (block, place) in enumerate(zip(solver.blocks, places, strict=True)):
-        if not isinstance(place, Expansion):
+        if not isinstance(place, Expansion | Enclosed):
             holds[:] = False
             continue
         found = _position(block, place, error_bound)
@@ -206,19 +212,20 @@ def prove_block(block: Block, part: Linearised, v: Array, error_bound: Array) ->
     error_bound : (B, N)
         How far these values may be from those in v.
     part : Linearised
-        The block at v. Its system has to have a curvature bound.
+        The block at v. Its system has to have known bounds.
     """
     with np.errstate(all="ignore"):
-        place = expansion(block.system, v[:, block.variables], part.jacobian, part.inverse)
+        place = _place(block, part, v)
+    assert place is not None
     return _position(block, place, error_bound)
 
 
-def _position(block: Block, place: Expansion, error_bound: Array) -> Radii:
+def _position(block: Block, place: Expansion | Enclosed, error_bound: Array) -> Radii:
     """In the block's own weights; where they do not suffice, in fitted ones."""
     found = _radii(block, place, error_bound)
     # fitting costs several products: the usual weights serve for most positions
     open_ = np.flatnonzero(~found.holds)
-    if not len(open_):
+    if not len(open_) or isinstance(place, Enclosed):
         return found
     fitted = _radii(block, place.take(open_), error_bound[open_], fitted=True)
     weights = block.system.variable_scale[: len(block.unknowns)]
@@ -230,9 +237,13 @@ def _position(block: Block, place: Expansion, error_bound: Array) -> Radii:
     return found
 
 
-def _radii(block: Block, place: Expansion, error_bound: Array, fitted: bool = False) -> Radii:
+def _radii(
+    block: Block, place: Expansion | Enclosed, error_bound: Array, fitted: bool = False
+) -> Radii:
     """In the block's own weights or in fitted ones."""
     n = len(block.unknowns)
+    if isinstance(place, Enclosed):  # its boxes are of all sizes
+        return place.radii(error_bound[:, block.variables[n:]])
     weights = block.system.variable_scale[:n]
     with np.errstate(all="ignore"):
         majorant = Majorant(place, error_bound[:, block.variables[n:]])
@@ -283,7 +294,7 @@ def reach(
     holds = np.ones(count, dtype=bool)
     isolation_radius = np.zeros((count, solver.unknowns))
     for block, place in zip(solver.blocks, places, strict=True):
-        if not isinstance(place, Expansion):
+        if not isinstance(place, Expansion | Enclosed):
             holds[:] = False
             continue
         found = _radii(block, place, error_bound, fitted=True)

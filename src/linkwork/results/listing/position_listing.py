@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence, Sized
 from dataclasses import dataclass
 
 from linkwork.foundation.certification import Certification
@@ -18,6 +18,7 @@ __all__ = [
     "changes_text",
     "inputs_text",
     "listed_links",
+    "radius_measure",
     "redundant_lines",
     "system_columns",
     "trail_columns",
@@ -65,6 +66,13 @@ def redundant_lines(redundant: Mapping[str, float]) -> Iterator[tuple[str, str]]
     for link, gap in redundant.items():
         size = significant(gap, 2)
         yield "redundant", f"{link}: its length holds to {size} of the longest link, not proved"
+
+
+def radius_measure(loops: Sized, formulas: Sized) -> str:
+    """The measure of radii, printed after the number: of loops, or of plain equations."""
+    if len(formulas):
+        return " of the size of the guess"
+    return " of the longest link" if len(loops) else ""
 
 
 def certificate_text(certificate: Certificate, measure: str) -> str:
