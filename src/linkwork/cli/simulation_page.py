@@ -45,6 +45,8 @@ def _facts(motion: Motion) -> Iterator[tuple[str, str]]:
     yield "certified", f"{int(motion.certified.sum())} of {int(motion.found.sum())}"
     if "load_power" in motion.quantities.derived:
         energy = motion["kinetic_energy"] + motion["stored_energy"]
+        if motion.flywheel_energy is not None:
+            energy = energy + motion.flywheel_energy
         fine = energy[np.isfinite(energy)]
         if len(fine):
             unit = motion.quantity("kinetic_energy").unit

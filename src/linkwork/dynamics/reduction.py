@@ -23,6 +23,7 @@ from linkwork.foundation.frozen import FrozenDict
 from linkwork.foundation.units import force_of_inertia
 from linkwork.mechanism.linkage import Linkage
 from linkwork.mechanism.loaded import LoadedBodies
+from linkwork.mechanism.part.rolling import Rolling
 from linkwork.motion.model import Model
 from linkwork.motion.named_quantities import RowValues
 from linkwork.results.quantity import Rate
@@ -85,9 +86,11 @@ class Reduction:
         self.description, self.place = description, place
         self.motor = description.inputs[0].motor
         self.switches: Mapping[Node, float] = FrozenDict()
-        #: Whether joints have friction.
+        #: Whether joints have friction; a rolling wheel has adhesion, which takes no energy.
         self.rubs = isinstance(description, Linkage) and any(
-            description.numbers(own.mu) > 0.0 for own in description.friction.values()
+            description.numbers(own.mu) > 0.0
+            for name, own in description.friction.items()
+            if not any(isinstance(p, Rolling) and p.name == name for p in description.parts)
         )
 
     @cached_property

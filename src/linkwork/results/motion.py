@@ -102,6 +102,8 @@ class Motion:
         Why no position was found at the guess.
     friction_work : array (N,), optional
         Of a simulation with friction: the energy that it has taken so far.
+    flywheel_energy : array (N,), optional
+        Of a simulation: the kinetic energy of the inertia on its inputs.
 
     Examples
     --------
@@ -147,12 +149,14 @@ class Motion:
     q: Array
     failure: Failure | None = None
     friction_work: Array | None = None
+    flywheel_energy: Array | None = None
 
     def __post_init__(self) -> None:
         for field in (*EVIDENCE, "added", "q"):
             object.__setattr__(self, field, read_only(getattr(self, field)))
-        if self.friction_work is not None:
-            object.__setattr__(self, "friction_work", read_only(self.friction_work))
+        for field in ("friction_work", "flywheel_energy"):
+            if getattr(self, field) is not None:
+                object.__setattr__(self, field, read_only(getattr(self, field)))
         inputs = {name: read_only(values) for name, values in self.inputs.items()}
         object.__setattr__(self, "inputs", FrozenDict(inputs))
 

@@ -151,6 +151,8 @@ def _energy(motion: Motion) -> str:
     if "load_power" not in motion.quantities.derived:
         return ""
     energy = motion["kinetic_energy"] + motion["stored_energy"]
+    if motion.flywheel_energy is not None:
+        energy = energy + motion.flywheel_energy
     known = energy[np.isfinite(energy)]
     if not len(known):
         return ""
