@@ -12,7 +12,7 @@ from linkwork.dynamics.curve import PositionCurve, curve_of
 from linkwork.dynamics.input_simulation import simulate_inputs
 from linkwork.dynamics.reduction import Forcing, Reduction
 from linkwork.dynamics.sample import Sample
-from linkwork.dynamics.simulated import bounds_of, check_loaded, start_speeds
+from linkwork.dynamics.simulated import bounds_of, check_loaded, start_speeds, straight_or_stop
 from linkwork.dynamics.travel import Travel
 from linkwork.foundation.arrays import Array
 from linkwork.foundation.errors import InputError, KeyWords, key_text
@@ -81,9 +81,7 @@ def simulate(
     """
     check_flags(progress, certify=certify)
     times = _times(until, step)
-    policy = ChangePointPolicy.of(change_points)
-    if policy is ChangePointPolicy.TURN:
-        raise InputError('a simulation goes straight on or stops: change_points "stop", "straight"')
+    policy = straight_or_stop(change_points)
     check_loaded(model)
     if len(model.description.inputs) > 1:
         several = simulate_inputs(
