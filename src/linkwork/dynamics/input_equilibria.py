@@ -99,8 +99,10 @@ def _settle(dynamics: InputDynamics) -> tuple[Array, Array] | None:
         bend, slope = _linearised(dynamics)
         if not (np.isfinite(bend).all() and np.isfinite(slope).all()):
             return None
-        # along directions without stiffness every place is as good
         step = -(_stiff_inverse(slope) @ bend)
+        # along directions without stiffness every place is as good, if nothing pulls that way
+        if np.abs(bend + slope @ step).max() > _FLAT * max(1.0, float(np.abs(slope).max())):
+            step = -np.asarray(np.linalg.lstsq(slope, bend, rcond=None)[0], dtype=float)
         size = float(np.abs(step).max())
         if size < _SETTLED * max(1.0, float(np.abs(dynamics.here).max())):
             return dynamics.variables, slope
@@ -128,6 +130,7 @@ def _linearised(dynamics: InputDynamics) -> tuple[Array, Array]:
 def _equilibrium(model: Model, v: Array, slope: Array) -> Equilibrium:
     # eq. (171)
     squares = np.linalg.eigvals(-slope).astype(complex)
+    squares[np.abs(squares) <= _FLAT * max(1.0, float(np.abs(squares).max()))] = 0.0
     growth = np.abs(np.sqrt(-squares).real)
     oscillates = (squares.real > 0.0) & (growth <= 1e-6 * np.sqrt(np.abs(squares)))
     rates = np.where(oscillates, np.sqrt(squares).real, -growth) / FULL_TURN
@@ -135,7 +138,7 @@ def _equilibrium(model: Model, v: Array, slope: Array) -> Equilibrium:
         variable.name: float(value) / model.units.scale(Kind(variable.kind))
         for variable, value in zip(model.equations.variables, v, strict=True)
     }
-    rates = np.sort(rates)
+    rates = np.sort(rates) + 0.0
     rank = int(np.linalg.matrix_rank(_stiff_inverse(slope)))
     indifferent = "" if rank == len(slope) else "near" if rank else "everywhere"
     return Equilibrium(
@@ -165,7 +168,8 @@ def _folded(model: Model, v: Array) -> Array:
 def _stiff_inverse(slope: Array) -> Array:
     """The inverse of ∂q̈/∂q (f, f) for directions that have a stiffness."""
     size = float(np.linalg.norm(slope, 2))
-    return np.linalg.pinv(slope, rcond=_FLAT * max(1.0, 1.0 / size)) if size else 0.0 * slope
+    cut = _FLAT * max(1.0, 1.0 / size) if size else 1.0
+    return np.asarray(np.linalg.pinv(slope, rcond=cut), dtype=float)
 
 
 def _is_same(model: Model, dynamics: InputDynamics, one: Array, other: Array, slope: Array) -> bool:
