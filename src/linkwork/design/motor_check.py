@@ -52,9 +52,9 @@ def motor_check(
     kind, scale = driven.motion_quantities.names.inputs[column], float(driven.input_scale[0])
     if not model.speed:
         raise InputError('a motor needs the speed of the input: speed = "300 rpm"')
-    if motor is None:
-        own = model.description.inputs[0].motor
-        motor = own if stall is None else Motor(stall=stall, free_speed=free_speed)
+    if motor is None and stall is not None:
+        motor = Motor(stall=stall, free_speed=free_speed)
+    motor = motor or model.description.inputs[0].motor
     if motor is None:
         raise InputError("there is no motor: add motor to the input, or give stall and free_speed")
     effort = motion.quantity(effort_name(column))
@@ -81,23 +81,17 @@ def motor_check(
     )
     places, values = turn.curve.extremes()
     peak_at, peak = first_extreme(places, np.abs(values))
-    if timed:
-        left, spent = (piecewise(model, motion, of).extremes()[1] for of in (reserve, power))
-        at_peak = between_rows(model, motion)(np.array([peak_at]))
-        available = float(curve(np.abs(speeds(at_peak)))[0])
-        least, most = float(left.min()), float(spent.max())
-    else:
-        available = float(curve(np.array([abs(model.speed) / scale]))[0])
-        least, most = available - peak, float((values * model.speed).max())
+    left, spent = (piecewise(model, motion, of).extremes()[1] for of in (reserve, power))
+    at_peak = between_rows(model, motion)(np.array([peak_at]))
     return MotorCheck(
         peak=peak,
         peak_at=peak_at / (1.0 if timed else scale),
         rms=math.sqrt(turn.curve.mean(power=2)),
         mean=turn.curve.mean(),
-        available=available,
-        reserve=least,
+        available=float(curve(np.abs(speeds(at_peak)))[0]),
+        reserve=float(left.min()),
         rated=rated,
-        power=most,
+        power=float(spent.max()),
         units={
             "effort": model.units.of(effort_kind(kind)),
             "power": model.units.of(Kind.POWER),

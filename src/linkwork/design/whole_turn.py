@@ -20,7 +20,7 @@ from linkwork.results.quantity import Kind
 __all__ = ["Cycle", "column_of", "cycle", "first_extreme", "whole_turn"]
 
 _EVEN = 1e-9  # of a turn: rounding of the table
-_SAME = 1e-12  # of the size: extremes that differ less are equal
+_EQUAL = 1e-12  # of the size: extremes that differ less are equal
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -112,5 +112,5 @@ def first_extreme(places: Array, values: Array) -> tuple[float, float]:
     """The first of the places with the largest value, to rounding, and the value."""
     order = np.argsort(places, kind="stable")
     largest = values.max()
-    k = order[np.argmax(values[order] >= largest - _SAME * np.abs(values).max())]
+    k = order[np.argmax(values[order] >= largest - _EQUAL * np.abs(values).max())]
     return float(places[k]), float(largest)

@@ -8,12 +8,9 @@ from dataclasses import replace
 import numpy as np
 
 from linkwork.forces.solving import forces_of_motion
-from linkwork.foundation.arrays import Array, BoolArray
+from linkwork.foundation.arrays import Array
 from linkwork.foundation.units import force_of_inertia
 from linkwork.mechanism.loaded import LoadedBodies
-from linkwork.mechanism.part.belt import Belt
-from linkwork.mechanism.part.cam import Cam
-from linkwork.mechanism.part.rolling import Rolling
 from linkwork.motion.model import Model
 from linkwork.results.motion import Motion
 
@@ -50,50 +47,38 @@ def with_contacts(
     ``at``: the motion at times (B,) while it moves; ``times``: some of them, so close that no
     change is missed between them.
     """
-    frictions = getattr(model.description, "friction", ())
-    watched = {
-        part.name: isinstance(part, Rolling) and part.name in frictions
-        for part in getattr(model.description, "parts", ())
-        if isinstance(part, Belt | Cam | Rolling)
+    parts = {
+        part.names[0]: part for part in getattr(model.description, "parts", ()) if part.lets_go
     }
-    if not watched:
+    if not parts:
         return motion
     looks = [motion] if at is None or times is None or not len(times) else [motion, at(times)]
     t = np.concatenate([each["t"] for each in looks])
     order = np.argsort(t, kind="stable")
-    found = [_unheld(model, each) for each in looks]
+    found = [forces_of_motion(model, each) for each in looks]
     told = [motion.message]
-    for name, how in found[0]:
-        wrong = np.concatenate([each[name, how] for each in found])[order]
-        if not wrong.any():
-            continue
-        k = int(wrong.argmax())
-        low, high = t[order][[max(k - 1, 0), k]].tolist()
-        for _ in range(0 if len(looks) == 1 else _ROUNDS):
-            assert at is not None
-            inside = np.linspace(low, high, _CUTS + 1)
-            cut = _unheld(model, at(inside))[name, how]
-            if not cut.any():
-                break
-            first = max(int(cut.argmax()), 1)
-            low, high = inside[[first - 1, first]].tolist()
-        told.append(f"{name} {how} at t = {high:.10g} s: later rows {_KEPT[how]}")
+    for name in found[0].values:
+        part = parts.get(name.partition(".")[0])
+        for tables, slips in (("lifted", False), ("slipping", True)):
+            wrong = np.concatenate([getattr(each, tables)[name] for each in found])[order]
+            if part is None or not wrong.any():
+                continue
+            k = int(wrong.argmax())
+            low, high = t[order][[max(k - 1, 0), k]].tolist()
+            for _ in range(0 if len(looks) == 1 else _ROUNDS):
+                assert at is not None
+                inside = np.linspace(low, high, _CUTS + 1)
+                cut = getattr(forces_of_motion(model, at(inside)), tables)[name]
+                if not cut.any():
+                    break
+                first = max(int(cut.argmax()), 1)
+                low, high = inside[[first - 1, first]].tolist()
+            how = part.lets_go[slips]
+            told.append(f"{name} {how} at t = {high:.10g} s: later rows {_KEPT[how]}")
+    frictions = getattr(model.description, "friction", ())
     told += [
         f"{name} rolls without slip"
-        for name, grips in watched.items()
-        if grips and not any(each[name, "slips"].any() for each in found)
+        for name, part in parts.items()
+        if "slips" in part.lets_go and name in frictions and not any(name in x for x in told[1:])
     ]
     return replace(motion, message="; ".join(told))
-
-
-def _unheld(model: Model, motion: Motion) -> dict[tuple[str, str], BoolArray]:
-    """The rows (B,) in which a contact does not hold, by its name and by how it fails."""
-    found = forces_of_motion(model, motion)
-    wrong: dict[tuple[str, str], BoolArray] = {}
-    for tables, how in ((found.slipping, "slips"), (found.lifted, "lifts off")):
-        for name, rows in tables.items():
-            part, _, force = name.partition(".")
-            slack = how == "lifts off" and force.startswith("tension")
-            key = (name, "goes slack") if slack else (part, how)
-            wrong[key] = wrong.get(key, np.zeros(len(motion), dtype=bool)) | rows
-    return wrong

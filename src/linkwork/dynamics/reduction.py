@@ -23,7 +23,6 @@ from linkwork.foundation.frozen import FrozenDict
 from linkwork.foundation.units import force_of_inertia
 from linkwork.mechanism.linkage import Linkage
 from linkwork.mechanism.loaded import LoadedBodies
-from linkwork.mechanism.part.rolling import Rolling
 from linkwork.motion.model import Model
 from linkwork.motion.named_quantities import RowValues
 from linkwork.results.quantity import Rate
@@ -90,7 +89,7 @@ class Reduction:
         self.rubs = isinstance(description, Linkage) and any(
             description.numbers(own.mu) > 0.0
             for name, own in description.friction.items()
-            if not any(isinstance(p, Rolling) and p.name == name for p in description.parts)
+            if not any("slips" in p.lets_go and name in p.names for p in description.parts)
         )
 
     @cached_property

@@ -14,7 +14,6 @@ from linkwork.forces.geometry import Geometry
 from linkwork.forces.switches import load_switches, switch_margins
 from linkwork.foundation.arrays import Array
 from linkwork.mechanism.loaded import LoadedBodies
-from linkwork.mechanism.part.spring import Spring
 from linkwork.motion.model import Model
 from linkwork.results.quantities.definition import Solved
 
@@ -36,11 +35,10 @@ def switch_places(model: Model, at: Callable[[Array], Solved], t: Array) -> tupl
     before, behind = np.zeros(0), np.zeros(0)
     if not isinstance(model.description, LoadedBodies):
         return before, behind
-    parts = getattr(model.description, "parts", ())
     springs = [
-        part.between
-        for part in parts
-        if isinstance(part, Spring) and part.pulls and part.between is not None
+        spring.between
+        for spring in getattr(model.description, "springs", ())
+        if spring.pulls and spring.between is not None
     ]
     margins = _Margins(model, at, springs)
     margins.springs = margins.varying(t)
