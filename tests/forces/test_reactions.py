@@ -423,6 +423,23 @@ def test_an_inversion_has_no_loads() -> None:
     assert not inverted.loads
 
 
+def test_both_sides_of_a_switch_are_known_between_rows() -> None:
+    rotor = lw.linkage(
+        length="m",
+        points={"O": (0, 0), "A": (0.03, 0)},
+        links={"ground": ["O"], "crank": ["O", "A"]},
+        inputs=lw.Input(link="crank", start=0, stop=360, step=5, speed="150 rpm"),
+        loads=[lw.Load(link="crank", torque="-(100 + 20000*(crank > 100.1)*(crank < 100.9))")],
+    )
+    found = rotor.forces()
+    assert np.max(found["crank.effort"]) == pytest.approx(100.0)
+    beside = found.at_switches
+    assert beside["crank"] == pytest.approx([100.1, 100.1, 100.9, 100.9], rel=1e-12)
+    assert beside["crank.effort"] == pytest.approx([100.0, 20100.0, 20100.0, 100.0])
+    smooth = rotor.changed(loads=[lw.Load(link="crank", torque="-5")]).forces()
+    assert not len(smooth.at_switches["crank"])
+
+
 def test_the_gas_of_an_engine_shakes_no_ground() -> None:
     """Head and crankcase are one: the load on ground is the opposite of that on the piston."""
     engine = lw.linkage(

@@ -25,7 +25,7 @@ _DIFFERS = 1e-7  # of the size: a row that differs more lies in a feature that t
 _TRIES = 3  # to find such features
 _NODES = 32  # of Gauss' rule: exact for squares of the polynomials
 _WAVES = 8.0  # radians of a wave on a piece for which the nodes suffice
-_SAME = 1e-14  # of the whole way: edges so near to each other are one
+_SAME_EDGE = 1e-14  # of the whole way: edges so near to each other are one
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -116,9 +116,9 @@ def piecewise(model: Model, motion: Motion, of: Callable[[Solved], Array]) -> Pi
     one, none = np.zeros(1, dtype=np.intp), np.zeros(1)
     for _ in range(_TRIES):
         edges = np.unique(edges)
-        edges = edges[np.append(True, np.diff(edges) > _SAME * (t[-1] - t[0]))]
+        edges = edges[np.append(True, np.diff(edges) > _SAME_EDGE * (t[-1] - t[0]))]
         panels = fit_panels(quantity, edges, one, none, _DEEPEST)
-        near = np.abs(t[:, None] - panels.edges).min(axis=1) <= _SAME * (t[-1] - t[0])
+        near = np.abs(t[:, None] - panels.edges).min(axis=1) <= _SAME_EDGE * (t[-1] - t[0])
         wrong = np.abs(panels(t)[:, 0] - rows) > _DIFFERS * np.abs(rows).max()
         if not (wrong & ~near).any():
             break

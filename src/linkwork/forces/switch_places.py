@@ -35,11 +35,8 @@ def switch_places(model: Model, at: Callable[[Array], Solved], t: Array) -> tupl
     before, behind = np.zeros(0), np.zeros(0)
     if not isinstance(model.description, LoadedBodies):
         return before, behind
-    springs = [
-        spring.between
-        for spring in getattr(model.description, "springs", ())
-        if spring.pulls and spring.between is not None
-    ]
+    parts = getattr(model.description, "parts", ())
+    springs = [p.between for p in parts if getattr(p, "pulls", False) and p.between is not None]
     margins = _Margins(model, at, springs)
     margins.springs = margins.varying(t)
     looks = np.concatenate([t[:-1] + k / _LOOKS * np.diff(t) for k in range(_LOOKS)] + [t[-1:]])
@@ -92,7 +89,9 @@ def _brackets(function: Callable[[Array], Array], places: Array) -> tuple[Array,
     low, high = _changes(places[None], values[None])
     size = np.abs(values)
     before, after = size[:-2] - size[1:-1], size[2:] - size[1:-1]
+    over = values > 0.0
     dips = (before >= 0.0) & (after >= 0.0) & (before + after > 0.0)
+    dips &= (over[:-2] == over[1:-1]) & (over[2:] == over[1:-1])
     inner = places[:-2][dips], places[2:][dips]
     for _ in range(_ROUNDS):
         if not len(inner[0]):
