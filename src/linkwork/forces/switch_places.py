@@ -36,9 +36,9 @@ def switch_places(model: Model, at: Callable[[Array], Solved], t: Array) -> tupl
     if not isinstance(model.description, LoadedBodies):
         return before, behind
     parts = getattr(model.description, "parts", ())
-    springs = [p.between for p in parts if getattr(p, "pulls", False) and p.between is not None]
-    margins = _Margins(model, at, springs)
-    margins.springs = margins.varying(t)
+    spans = [p.between for p in parts if getattr(p, "pulls", False) and p.between is not None]
+    margins = _Margins(model, at, spans)
+    margins.spans = margins.varying(t)
     looks = np.concatenate([t[:-1] + k / _LOOKS * np.diff(t) for k in range(_LOOKS)] + [t[-1:]])
     for k in range(len(margins(t[:1]))):
         # outer functions have corners where inner ones, which come first, change their signs
@@ -53,18 +53,18 @@ def switch_places(model: Model, at: Callable[[Array], Solved], t: Array) -> tupl
 class _Margins:
     """Functions of places (B,) that change their signs where loads switch, (B,) each.
 
-    ``springs``: the ends of those that have a shortest length on the way.
+    ``spans``: the ends of those that have a shortest length on the way.
     """
 
     model: Model
     at: Callable[[Array], Solved]
-    springs: list[tuple[str, str]]
+    spans: list[tuple[str, str]]
 
     def __call__(self, places: Array) -> list[Array]:
         applied = AppliedLoads(Geometry(self.model, self.at(places)), self.model.speed or 0.0)
         found = switch_margins(load_switches(self.model.description), applied)
-        spans = (self._span(applied.geometry, ends) for ends in self.springs)
-        return [*found, *((span.v.conj() * span.d1).real for span in spans)]
+        lengths = (self._span(applied.geometry, ends) for ends in self.spans)
+        return [*found, *((span.v.conj() * span.d1).real for span in lengths)]
 
     def one(self, k: int, places: Array) -> Array:
         """One of them at places of any shape."""
@@ -74,9 +74,7 @@ class _Margins:
         """The springs whose lengths vary."""
         geometry = Geometry(self.model, self.at(places))
         least = _SAME_LENGTH * geometry.length
-        return [
-            ends for ends in self.springs if np.ptp(np.abs(self._span(geometry, ends).v)) > least
-        ]
+        return [ends for ends in self.spans if np.ptp(np.abs(self._span(geometry, ends).v)) > least]
 
     @staticmethod
     def _span(geometry: Geometry, ends: tuple[str, str]) -> Jet:
