@@ -421,3 +421,43 @@ def test_an_inversion_has_no_loads() -> None:
     inverted = described_as(Linkage, lw.example("crank-press").inversion("rod"))
     assert not inverted.masses
     assert not inverted.loads
+
+
+def test_both_sides_of_a_switch_are_known_between_rows() -> None:
+    rotor = lw.linkage(
+        length="m",
+        points={"O": (0, 0), "A": (0.03, 0)},
+        links={"ground": ["O"], "crank": ["O", "A"]},
+        inputs=lw.Input(link="crank", start=0, stop=360, step=5, speed="150 rpm"),
+        loads=[lw.Load(link="crank", torque="-(100 + 20000*(crank > 100.1)*(crank < 100.9))")],
+    )
+    found = rotor.forces()
+    assert np.max(found["crank.effort"]) == pytest.approx(100.0)
+    beside = found.at_switches
+    assert beside["crank"] == pytest.approx([100.1, 100.1, 100.9, 100.9], rel=1e-12)
+    assert beside["crank.effort"] == pytest.approx([100.0, 20100.0, 20100.0, 100.0])
+    smooth = rotor.changed(loads=[lw.Load(link="crank", torque="-5")]).forces()
+    assert not len(smooth.at_switches["crank"])
+
+
+def test_the_gas_of_an_engine_shakes_no_ground() -> None:
+    """Head and crankcase are one: the load on ground is the opposite of that on the piston."""
+    engine = lw.linkage(
+        length="m",
+        points={"O": (0, 0), "T": (0.3, 0), "A": (0.03, 0.04), "B": (0.23, 0)},
+        links={"ground": ["O", "T"], "crank": ["O", "A"], "rod": ["A", "B"], "piston": ["B"]},
+        sliders=[lw.Slider(name="d", link="piston", points=("B",), on="ground", line=("O", "T"))],
+        masses={"piston": lw.Mass(mass=1)},
+        inputs=lw.Input(link="crank", start=0, stop=360, step=45, speed="100 rad/s"),
+    )
+    gas = "1000*(d < 0.2)"
+    piston = lw.Load(point="B", link="piston", force=(f"-{gas}", 0))
+    ran, idle = engine.forces(), engine.changed(loads=[piston]).forces()
+    for head in (lw.Load(point="T", link="ground", force=(gas, 0)),
+                 lw.Load(point="T", force=(gas, 0))):  # fmt: skip
+        both = engine.changed(loads=[piston, head]).forces()
+        size = np.abs(ran["shaking.x"]).max()
+        assert both["shaking.x"] == pytest.approx(ran["shaking.x"], abs=1e-12 * size)
+        assert both["crank.effort"] == pytest.approx(idle["crank.effort"], abs=1e-12 * size)
+    with pytest.raises(lw.MechanismError, match="is fixed: the force has no effect"):
+        engine.changed(loads=[head])

@@ -77,7 +77,7 @@ def motion_forces_lines(
     ends = [] if motion.found.all() else [*limit_fields(motion)]
     lines += fields([*force_status_fields(found), *ends])
     listed = finite_forces(found, names)
-    lines += ["", *range_lines(motion, listed)] if listed else []
+    lines += ["", *range_lines(motion, listed, found.at_switches)] if listed else []
     return [*lines, "", *fields(list(force_fields(found, stalls)))]
 
 

@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 
 from linkwork.cli.terminal import bad, fields, sentence, title_lines
 from linkwork.cli.text_table import table_lines
+from linkwork.foundation.arrays import Array
+from linkwork.foundation.frozen import FrozenDict
 from linkwork.foundation.status import Status
 from linkwork.results.listing.motion_listing import (
     evidence_fields,
@@ -39,9 +41,14 @@ def motion_lines(
     return [*lines, "", *ranges] if ranges else lines
 
 
-def range_lines(motion: Motion, columns: Sequence[str]) -> list[str]:
-    """The smallest and largest values of columns, as in :func:`motion_lines`."""
-    return table_lines(range_columns(motion, columns)) if motion.found.any() else []
+def range_lines(
+    motion: Motion, columns: Sequence[str], between: Mapping[str, Array] = FrozenDict()
+) -> list[str]:
+    """The smallest and largest values of columns, as in :func:`motion_lines`; ``between``: further
+    values of inputs and columns.
+    """
+    ranges = range_columns(motion, columns, between=between) if motion.found.any() else []
+    return table_lines(ranges)
 
 
 def answers(motion: Motion, *, through: bool) -> bool:

@@ -31,6 +31,7 @@ __all__ = [
     "of_option",
     "range_options",
     "set_option",
+    "straight_option",
     "through_option",
 ]
 
@@ -132,6 +133,13 @@ change_points_option: Decorator = click.option(
     default=ChangePointPolicy.STOP.value,
     show_default=True,
     help="At a change point: stop, go straight on, or turn onto the other branch.",
+)
+straight_option: Decorator = click.option(
+    "--change-points",
+    type=click.Choice([ChangePointPolicy.STOP.value, ChangePointPolicy.STRAIGHT.value]),
+    default=ChangePointPolicy.STOP.value,
+    show_default=True,
+    help="At a change point: stop, or go straight on.",
 )
 
 

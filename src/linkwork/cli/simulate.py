@@ -11,7 +11,6 @@ from linkwork.cli import picture
 from linkwork.cli.mechanism_source import read_mechanism
 from linkwork.cli.options import (
     at_option,
-    change_points_option,
     columns_option,
     debug_option,
     file_argument,
@@ -19,6 +18,7 @@ from linkwork.cli.options import (
     json_option,
     number_or_formula,
     set_option,
+    straight_option,
 )
 from linkwork.cli.output_file import check_outputs, write_table
 from linkwork.cli.simulation_page import equilibria_lines, motion_data, simulation_lines
@@ -41,7 +41,7 @@ __all__ = ["simulate"]
     multiple=True,
     help='Of the input: "60 rad/s", default 0; of several "left=60 rad/s", once for each.',
 )
-@change_points_option
+@straight_option
 @click.option("--equilibria", is_flag=True, help="List the positions of rest, and no motion.")
 @columns_option("Print, write and plot only this quantity.")
 @click.option("--no-certificates", is_flag=True, help="Skip the proofs (faster).")

@@ -44,7 +44,7 @@ def _facts(motion: Motion) -> Iterator[tuple[str, str]]:
             yield "event", f"{word}, {count} times" if count > 1 else word
     yield "certified", f"{int(motion.certified.sum())} of {int(motion.found.sum())}"
     if "load_power" in motion.quantities.derived:
-        energy = motion["kinetic_energy"] + motion["stored_energy"]
+        energy = motion.energy
         fine = energy[np.isfinite(energy)]
         if len(fine):
             unit = motion.quantity("kinetic_energy").unit
@@ -62,6 +62,8 @@ def equilibria_lines(mechanism: Mechanism, found: Sequence[Equilibrium]) -> list
     lines = title_lines(mechanism.description.name)
     if not found:
         return [*lines, *sentence(bad, "No equilibrium on the circuit of the start")]
+    if found[0].indifferent == "everywhere":
+        return [*lines, *sentence(good, "In equilibrium at every position (indifferent)")]
     head = f"{len(found)} equilibri{'um' if len(found) == 1 else 'a'} on the circuit of the start"
     units = mechanism.model.input_units
     if len(units) > 1:
@@ -80,9 +82,7 @@ def equilibria_lines(mechanism: Mechanism, found: Sequence[Equilibrium]) -> list
                     )
                     for name, unit in units.items()
                 ),
-                Column(
-                    header="", cells=["stable" if each.stable else "unstable" for each in found]
-                ),
+                Column(header="", cells=[_stability(each) for each in found]),
                 *(
                     Column(
                         header=f"mode {k + 1} [Hz]" if len(units) > 1 else "frequency [Hz]",
@@ -94,6 +94,10 @@ def equilibria_lines(mechanism: Mechanism, found: Sequence[Equilibrium]) -> list
             ]
         ),
     ]
+
+
+def _stability(each: Equilibrium) -> str:
+    return "indifferent" if each.indifferent else "stable" if each.stable else "unstable"
 
 
 def _frequency(value: float) -> str:

@@ -107,7 +107,8 @@ def balanced(linkage: Linkage, weights: tuple[Counterweight, ...]) -> Linkage:
 def _shaking(linkage: Linkage) -> tuple[float, float]:
     """The largest shaking force and moment of the masses alone, at the input's speed or 1 rad/s."""
     inputs = tuple(
-        own if own.speed is not None else replace(own, speed="1 rad/s") for own in linkage.inputs
+        own if own.speed is not None or own.law is not None else replace(own, speed="1 rad/s")
+        for own in linkage.inputs
     )
     alone = replace(
         linkage, loads=(), springs=(), gravity=None, friction=FrozenDict(), inputs=inputs

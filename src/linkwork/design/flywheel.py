@@ -2,11 +2,8 @@
 
 from __future__ import annotations
 
-import numpy as np
-
-from linkwork.design.whole_turn import WholeTurn, whole_turn
+from linkwork.design.whole_turn import first_extreme, whole_turn
 from linkwork.forces.drives import effort_name
-from linkwork.foundation.arrays import Array
 from linkwork.foundation.errors import InputError
 from linkwork.foundation.units import force_of_inertia
 from linkwork.mechanism.loaded import LoadedBodies
@@ -34,44 +31,31 @@ def flywheel(model: Model, motion: Motion, fluctuation: float) -> Flywheel:
         raise InputError("a flywheel needs a mechanism with links and loads")
     if not fluctuation > 0.0:
         raise InputError(f"the fluctuation of the speed must be positive, got {fluctuation:g}")
+    if description.timed:
+        raise InputError("a law fixes the speed of the input: leave it out, and give speed")
     speed, lead = model.speed, model.motion_quantities.names.lead
     if not speed:
         raise InputError('a flywheel needs the speed of the input: speed = "300 rpm"')
-    turn = whole_turn(model, motion, effort_name(lead))
-    angle, energy = _energy(turn)
-    low, high = int(np.argmin(energy)), int(np.argmax(energy))
-    stored = float(energy[high] - energy[low])
+    curve = whole_turn(model, motion, effort_name(lead)).curve
+    mean = curve.mean()
+    # power in is positive along the motion, also of an input that turns backwards
+    angle, energy = curve.missing(mean)
+    (fastest, high), (slowest, low) = (first_extreme(angle, k * energy) for k in (1.0, -1.0))
+    stored = high + low
     unit = force_of_inertia(description.mass, description.length, description.force)
     scale, units = model.units.scale(Kind.ANGLE), model.units
     return Flywheel(
         fluctuation=fluctuation,
-        mean=turn.mean,
+        mean=mean,
         energy=stored,
         # eq. (78)
         inertia=stored / (fluctuation * (speed * speed)) / unit,
-        slowest=float(angle[low] / scale),
-        fastest=float(angle[high] / scale),
+        slowest=slowest / scale,
+        fastest=fastest / scale,
         units={
             "mean": units.of(Kind.MOMENT),
             "energy": units.of(Kind.ENERGY),
             "inertia": f"{description.mass}·{description.length}²",
             "input": units.of(Kind.ANGLE),
         },
-    )
-
-
-def _energy(turn: WholeTurn) -> tuple[Array, Array]:
-    """The energy of the flywheel, at all rows and where the effort is equal to its mean."""
-    # extremes lie where the effort crosses its mean, between rows too
-    surplus = turn.mean - turn.value
-    a, b = surplus[:-1], surplus[1:]
-    with np.errstate(all="ignore"):
-        share = np.where(a * b < 0.0, a / (a - b), 0.0)
-    step = np.diff(turn.angle)
-    # power in is positive along the motion, also of an input that turns backwards
-    before = np.concatenate([[0.0], np.cumsum((a + b) / 2.0 * step)])
-    between = before[:-1] + a * share * step / 2.0
-    return (
-        np.concatenate([turn.angle, turn.angle[:-1] + share * step]),
-        np.concatenate([before, between]),
     )

@@ -14,7 +14,9 @@ __all__ = ["harmonics"]
 
 
 def harmonics(model: Model, motion: Motion, of: str, count: int = 8) -> Harmonics:
-    """The discrete Fourier sum of a quantity over one turn of the input.
+    """The Fourier sum of a quantity over one turn of the input.
+
+    Its coefficients are integrals, to rounding also of quantities that jump between rows.
 
     Raises
     ------
@@ -26,11 +28,11 @@ def harmonics(model: Model, motion: Motion, of: str, count: int = 8) -> Harmonic
     if not 1 <= count < rows / 2.0:
         raise InputError(f"{rows} rows of a turn give from 1 to {(rows - 1) // 2} harmonics")
     orders = np.arange(1, count + 1)
-    waves = np.exp(-1j * orders[:, None] * turn.angle[None, :-1])
     # eq. (79)
-    parts = 2.0 / rows * waves @ turn.value[:-1]
-    mean = float(np.mean(turn.value[:-1]))
-    total = mean + (parts[:, None] * waves.conj()).real.sum(axis=0)
+    parts = 2.0 * np.array([turn.curve.wave(order) for order in orders.tolist()])
+    mean = turn.curve.mean()
+    waves = np.exp(1j * orders[:, None] * turn.place[None, :-1])
+    total = mean + (parts[:, None] * waves).real.sum(axis=0)
     period = 360.0 / orders
     return Harmonics(
         of=of,

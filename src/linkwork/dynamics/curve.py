@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from itertools import pairwise
 
 import numpy as np
 
@@ -30,7 +31,7 @@ from linkwork.numerics.rows import SolvedRows
 __all__ = ["Leg", "PositionCurve", "curve_of"]
 
 _GAIN = 1e-9  # of the scale: a length that grew by more in a lap has really grown
-_SPANS = 2.0  # of its table: how far an input length without unknowns may move
+_DOUBLINGS = 24  # of the longest link: how far an input length without unknowns may move
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -136,8 +137,7 @@ def _without_unknowns(model: Model, drive: Drive, start: Array) -> PositionCurve
     """A driven link or slider alone: the input is the position."""
     value = float(start[0])
     angle = bool(model.compiled.table.is_angle[0])
-    span = float(np.ptp(np.append(model.rows, value)))
-    reach = 0.5 * FULL_TURN if angle else _SPANS * (span or model.equations.length_scale)
+    reach = 0.5 * FULL_TURN if angle else model.equations.length_scale
 
     def rows(values: Array, certify: bool) -> SolvedRows:
         v = np.asarray(values, dtype=float)[:, None]
@@ -155,7 +155,17 @@ def _without_unknowns(model: Model, drive: Drive, start: Array) -> PositionCurve
             uniqueness_radius=np.full(count, np.inf),
         )
 
-    leg = Leg(lead=0, begin=value - reach, end=value + reach, rows=rows)
-    gain = np.full(1, FULL_TURN if angle else 0.0)
-    why = "the input has left its table of positions"
-    return PositionCurve(legs=(leg,), home=0, value=value, closed=angle, gain=gain, ends=(why, why))
+    if angle:
+        leg = Leg(lead=0, begin=value - reach, end=value + reach, rows=rows)
+        gain = np.full(1, FULL_TURN)
+        return PositionCurve(legs=(leg,), home=0, value=value, closed=True, gain=gain)
+    # every leg is twice as far as the one before, so that its tables resolve what is near
+    edges = value + reach * np.concatenate(
+        [-(2.0 ** np.arange(_DOUBLINGS))[::-1], 2.0 ** np.arange(_DOUBLINGS)]
+    )
+    legs = [Leg(lead=0, begin=a, end=b, rows=rows) for a, b in pairwise(edges.tolist())]
+    why = f"the input is {edges[-1] - value:.2g} {model.description.length} from its start"
+    home = _DOUBLINGS - 1
+    return PositionCurve(
+        legs=tuple(legs), home=home, value=value, closed=False, gain=np.zeros(1), ends=(why, why)
+    )

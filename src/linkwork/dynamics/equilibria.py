@@ -11,8 +11,9 @@ import numpy as np
 from linkwork.dynamics.events import Bound
 from linkwork.dynamics.input_equilibria import input_equilibria
 from linkwork.dynamics.reduced_leg import ReducedLeg
-from linkwork.dynamics.simulated import bounds_of, check_loaded
+from linkwork.dynamics.simulated import bounds_of, check_loaded, straight_or_stop
 from linkwork.dynamics.simulation import start_of
+from linkwork.forces.applied import AppliedLoads
 from linkwork.foundation.angles import FULL_TURN
 from linkwork.foundation.arrays import Array
 from linkwork.foundation.policy import ChangePointPolicy
@@ -27,6 +28,8 @@ _ROUNDS = 12
 _SLOPE = 1e-3  # of a panel: differences of fourth order for the stiffness
 _SAME_PLACE = 1e-9  # of a turn, or of the longest link
 _BALANCED = 1e-9  # of the largest net force: a zero, not a jump of a comparison
+_NONE = 1e-12  # of the largest loads: a net force of rounding
+_STRETCH = 5  # places in a row without a net force: no zero of a lower order is so wide
 
 
 def equilibria(
@@ -38,7 +41,8 @@ def equilibria(
     """All equilibria on the circuit of the start within the stops, in its order.
 
     The net force along the motion is zero there, at rest and at t = 0. Two equilibria between two
-    of 256 places of a panel are not seen. With several inputs: those to which Newton's method leads
+    of 256 places of a panel are not seen. Where loads balance at all positions, or on a stretch,
+    one is listed for it. With several inputs: those to which Newton's method leads
     from a grid of starts.
 
     Raises
@@ -46,23 +50,29 @@ def equilibria(
     InputError
         As :func:`linkwork.dynamics.simulate`.
     """
-    policy = ChangePointPolicy.of(change_points)
+    policy = straight_or_stop(change_points)
     check_loaded(model)
     if len(model.description.inputs) > 1:
         return input_equilibria(model, at)
     reduction, curve = start_of(model, at, policy, False)
     bounds = bounds_of(reduction.named)
     found: list[Equilibrium] = []
-    for leg in curve.legs:
-        reduced = ReducedLeg(reduction, leg)
-        places = sorted(_zeros(reduced), reverse=leg.begin > leg.end)
-        for s in places:
+    legs = [ReducedLeg(reduction, leg) for leg in curve.legs]
+    zeros = [[*_zeros(leg)] for leg in legs]
+    if all(
+        ends == [tuple(leg.table.edges[[0, -1]])] for leg, ends in zip(legs, zeros, strict=True)
+    ):
+        none = np.zeros(legs[0].variables)
+        return (_equilibrium(legs[curve.home], curve.value, none, "everywhere"),)
+    for leg, ends in zip(legs, zeros, strict=True):
+        for low, high in sorted(ends, reverse=leg.leg.begin > leg.leg.end):
+            s = 0.5 * (low + high)
             # from the start a place may be reached forwards or backwards
             laps = (0, -1, 1) if curve.closed and bounds else (0,)
             gains = [lap * curve.gain for lap in laps]
-            gain = next((gain for gain in gains if _inside(reduced, s, gain, bounds)), None)
+            gain = next((gain for gain in gains if _inside(leg, s, gain, bounds)), None)
             if gain is not None:
-                found.append(_equilibrium(reduced, s, gain))
+                found.append(_equilibrium(leg, s, gain, "near" if high > low else ""))
     kept: list[Equilibrium] = []
     for each in found:
         if not any(_same(model, each, other) for other in kept):
@@ -75,17 +85,38 @@ def _force(leg: ReducedLeg, s: Array) -> Array:
     return leg.acceleration(s, still, still, np.zeros(leg.variables)) * leg.numbers(s)[:, 0]
 
 
-def _zeros(leg: ReducedLeg) -> Iterator[float]:
+def _load_size(leg: ReducedLeg, s: Array) -> float:
+    """The largest sum of the sizes of all works per unit of the leader at rest."""
+    still = np.zeros_like(s)
+    state = leg.state(s, still, still, np.zeros(leg.variables))
+    applied, weights = leg.reduction.loaded(state.moving), AppliedLoads(state.displaced, 1.0)
+    weights.weigh(leg.reduction.description)
+    sizes = [np.abs(force * state.displaced.place(at).d1) for at, force, _ in applied.forces]
+    sizes += [np.abs(own * state.displaced.angle(link).d1) for link, own in applied.torques]
+    sizes += [np.abs(body.weight_rate) for body in weights.masses]
+    return float(np.max(sum(sizes, still)))
+
+
+def _zeros(leg: ReducedLeg) -> Iterator[tuple[float, float]]:
+    """The places without a net force, each twice, and both ends of stretches without any."""
     edges = leg.table.edges
     looks = np.concatenate([np.linspace(a, b, _LOOKS + 1)[:-1] for a, b in pairwise(edges)])
     looks = np.append(looks, edges[-1])
     force = _force(leg, looks)
     largest = float(np.abs(force).max())
-    for end in (0, -1):
+    none = np.abs(force) <= _NONE * _load_size(leg, looks)
+    flat = np.zeros_like(none)
+    jumps = np.diff(np.concatenate([[0], none, [0]]).astype(int))
+    for first, end in zip(np.flatnonzero(jumps > 0), np.flatnonzero(jumps < 0), strict=True):
+        if end - first >= _STRETCH:
+            flat[first:end] = True
+            yield float(looks[first]), float(looks[end - 1])
+    for k in (0, -1):
         # a zero at the joint of two legs may change its sign on neither
-        if largest and abs(float(force[end])) <= _BALANCED * largest:
-            yield float(looks[end])
-    for k in np.flatnonzero((force[:-1] > 0.0) != (force[1:] > 0.0)):
+        if largest and abs(float(force[k])) <= _BALANCED * largest and not flat[k]:
+            yield float(looks[k]), float(looks[k])
+    changes = (force[:-1] > 0.0) != (force[1:] > 0.0)
+    for k in np.flatnonzero(changes & ~flat[:-1] & ~flat[1:]).tolist():
         low, high = float(looks[k]), float(looks[k + 1])
         for _ in range(_ROUNDS):
             inside = np.linspace(low, high, 17)
@@ -96,7 +127,7 @@ def _zeros(leg: ReducedLeg) -> Iterator[float]:
                 break
         s = 0.5 * (low + high)
         if abs(float(_force(leg, np.array([s]))[0])) <= _BALANCED * largest:
-            yield s
+            yield s, s
 
 
 def _inside(leg: ReducedLeg, s: float, gain: Array, bounds: Sequence[Bound]) -> bool:
@@ -105,7 +136,7 @@ def _inside(leg: ReducedLeg, s: float, gain: Array, bounds: Sequence[Bound]) -> 
     return all(bound.margin(leg, here, still, still, gain)[0] >= 0.0 for bound in bounds)
 
 
-def _equilibrium(leg: ReducedLeg, s: float, gain: Array) -> Equilibrium:
+def _equilibrium(leg: ReducedLeg, s: float, gain: Array, indifferent: str = "") -> Equilibrium:
     model = leg.reduction.model
     panel = int(leg.table.locate(np.array([s]))[0][0])
     step = _SLOPE * float(leg.table.edges[panel + 1] - leg.table.edges[panel])
@@ -114,6 +145,8 @@ def _equilibrium(leg: ReducedLeg, s: float, gain: Array) -> Equilibrium:
     mass = float(leg.numbers(np.array([s]))[0, 0])
     # eq. (93)
     frequency = math.copysign(math.sqrt(abs(stiffness) / mass), stiffness) / FULL_TURN
+    if indifferent:
+        stiffness = frequency = 0.0
     v = leg.leg.rows(np.array([s]), False).v[0] + gain
     names = model.equations.variables
     values = {
@@ -122,7 +155,7 @@ def _equilibrium(leg: ReducedLeg, s: float, gain: Array) -> Equilibrium:
     }
     return Equilibrium(
         input=values[names[-1].name], values=values, stable=stiffness > 0.0, frequency=frequency,
-        frequencies=(frequency,),
+        frequencies=(frequency,), indifferent=indifferent,
     )  # fmt: skip
 
 

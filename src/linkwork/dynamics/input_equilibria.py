@@ -30,6 +30,7 @@ _ROUNDS = 60
 _SETTLED = 1e-12
 _DIFFERENCE = 1e-3  # of fourth order: its error is that of rounding
 _SAME_POSITION = 1e-7
+_FLAT = 1e-9  # of the largest stiffness, or of 1/s²: none, by differences of rounding
 
 
 def input_equilibria(
@@ -59,9 +60,7 @@ def input_equilibria(
         place = _folded(model, v)
         if not _inside(dynamics, place, bounds):
             continue
-        if not any(
-            _distance(model, dynamics, place, other) < _SAME_POSITION for other, *_ in found
-        ):
+        if not any(_is_same(model, dynamics, place, other, slope) for other, *_ in found):
             found.append((place, v, slope))
     lead = dynamics.solver.unknowns
     found.sort(key=lambda each: tuple(np.round(each[0][lead:], 6)))
@@ -100,7 +99,10 @@ def _settle(dynamics: InputDynamics) -> tuple[Array, Array] | None:
         bend, slope = _linearised(dynamics)
         if not (np.isfinite(bend).all() and np.isfinite(slope).all()):
             return None
-        step = -np.linalg.lstsq(slope, bend, rcond=None)[0]
+        step = -(_stiff_inverse(slope) @ bend)
+        # along directions without stiffness every place is as good, if nothing pulls that way
+        if np.abs(bend + slope @ step).max() > _FLAT * max(1.0, float(np.abs(slope).max())):
+            step = -np.asarray(np.linalg.lstsq(slope, bend, rcond=None)[0], dtype=float)
         size = float(np.abs(step).max())
         if size < _SETTLED * max(1.0, float(np.abs(dynamics.here).max())):
             return dynamics.variables, slope
@@ -128,6 +130,7 @@ def _linearised(dynamics: InputDynamics) -> tuple[Array, Array]:
 def _equilibrium(model: Model, v: Array, slope: Array) -> Equilibrium:
     # eq. (171)
     squares = np.linalg.eigvals(-slope).astype(complex)
+    squares[np.abs(squares) <= _FLAT * max(1.0, float(np.abs(squares).max()))] = 0.0
     growth = np.abs(np.sqrt(-squares).real)
     oscillates = (squares.real > 0.0) & (growth <= 1e-6 * np.sqrt(np.abs(squares)))
     rates = np.where(oscillates, np.sqrt(squares).real, -growth) / FULL_TURN
@@ -135,13 +138,16 @@ def _equilibrium(model: Model, v: Array, slope: Array) -> Equilibrium:
         variable.name: float(value) / model.units.scale(Kind(variable.kind))
         for variable, value in zip(model.equations.variables, v, strict=True)
     }
-    rates = np.sort(rates)
+    rates = np.sort(rates) + 0.0
+    rank = int(np.linalg.matrix_rank(_stiff_inverse(slope)))
+    indifferent = "" if rank == len(slope) else "near" if rank else "everywhere"
     return Equilibrium(
         input=values[model.equations.inputs[0].name],
         values=values,
-        stable=bool(oscillates.all()),
+        stable=bool(oscillates.all()) and not indifferent,
         frequency=float(rates[0]),
         frequencies=tuple(map(float, rates)),
+        indifferent=indifferent,
     )
 
 
@@ -159,6 +165,20 @@ def _folded(model: Model, v: Array) -> Array:
     return np.where(angles, v - FULL_TURN * np.round(v / FULL_TURN), v)
 
 
-def _distance(model: Model, dynamics: InputDynamics, one: Array, other: Array) -> float:
+def _stiff_inverse(slope: Array) -> Array:
+    """The inverse of ∂q̈/∂q (f, f) for directions that have a stiffness."""
+    size = float(np.linalg.norm(slope, 2))
+    cut = _FLAT * max(1.0, 1.0 / size) if size else 1.0
+    return np.asarray(np.linalg.pinv(slope, rcond=cut), dtype=float)
+
+
+def _is_same(model: Model, dynamics: InputDynamics, one: Array, other: Array, slope: Array) -> bool:
+    """Whether two are one position, or differ along directions without stiffness only."""
     gap = _folded(model, one - other) / dynamics.solver.variable_scale
-    return float(np.abs(gap).max())
+    if float(np.abs(gap).max()) < _SAME_POSITION:
+        return True
+    inverse = _stiff_inverse(slope)
+    if np.linalg.matrix_rank(inverse) == len(slope):
+        return False
+    moved = gap[dynamics.solver.unknowns :]
+    return float(np.abs(inverse @ (slope @ moved)).max()) < _SAME_POSITION

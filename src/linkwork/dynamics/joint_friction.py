@@ -103,7 +103,7 @@ class JointFriction:
         least = first.scales
         #: The answers of a unit load compare with each other.
         self.table: Panels = fit_panels(
-            lambda s: _Bodies(reduction, rows(s), steady).columns, low, high, first.groups, least
+            lambda s: _Bodies(reduction, rows(s), steady).columns, (low, high), first.groups, least
         )
         self.fastest = np.abs(self._answers(looks).motions).max(axis=0)
         self.moving = self.fastest > _STILL * max(self.fastest.max(initial=0.0), first.pace)

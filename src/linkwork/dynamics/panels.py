@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from itertools import pairwise
 
 import numpy as np
 
@@ -70,19 +71,24 @@ class Panels:
 
 
 def fit_panels(
-    function: Callable[[Array], Array], low: float, high: float, groups: IndexArray, least: Array
+    function: Callable[[Array], Array],
+    edges: Sequence[float] | Array,
+    groups: IndexArray,
+    least: Array,
+    deepest: int = _DEEPEST,
 ) -> Panels:
-    """Fit functions, (B,) → (B, K), from ``low`` to ``high``.
+    """Fit functions, (B,) → (B, K), between rising edges, and on halves of these panels where
+    needed.
 
     ``groups`` (K,): functions of one number have one size, which is at least ``least`` (K,).
     """
     x = np.cos(np.pi * (np.arange(_NODES) + 0.5) / _NODES)
     fit = np.linalg.inv(np.polynomial.chebyshev.chebvander(x, _NODES - 1))
     done: list[tuple[float, float, Array]] = []
-    waiting = [(low, high)]
-    before = np.full((1, len(groups)), np.inf)
+    waiting = [(float(a), float(b)) for a, b in pairwise(edges)]
+    before = np.full((len(waiting), len(groups)), np.inf)
     size = least
-    for depth in range(_DEEPEST + 1):
+    for depth in range(deepest + 1):
         places = np.concatenate(
             [0.5 * (a + b) + 0.5 * (b - a) * x for a, b in waiting] or [np.zeros(0)]
         )
@@ -92,7 +98,7 @@ def fit_panels(
         coefficients = np.einsum("mn,pnk->pmk", fit, values)
         tails = np.abs(coefficients[:, -_TAIL:]).max(axis=1)
         noise = (tails < _ROUNDING * size) & (tails > 0.1 * before)
-        rough = ((tails > _RESOLVED * size) & ~noise).any(axis=1) & (depth < _DEEPEST)
+        rough = ((tails > _RESOLVED * size) & ~noise).any(axis=1) & (depth < deepest)
         parts: list[tuple[float, float]] = []
         for (a, b), own, split in zip(waiting, coefficients, rough, strict=True):
             if split:
@@ -104,6 +110,6 @@ def fit_panels(
             break
     done.sort(key=lambda panel: panel[0])
     return Panels(
-        edges=np.array([low, *(b for _, b, _ in done)]),
+        edges=np.array([edges[0], *(b for _, b, _ in done)]),
         coefficients=np.stack([own for _, _, own in done]),
     )

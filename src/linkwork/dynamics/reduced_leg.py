@@ -38,7 +38,7 @@ class ReducedLeg:
         groups = np.concatenate([[0, 1, 1], 2 + np.arange(self.variables)])
         groups = np.concatenate([groups, np.full(self.variables, groups[-1] + 1)])
         least = np.concatenate([np.zeros(3), scale, np.zeros(self.variables)])
-        whole = fit_panels(self._tabulated, low, high, groups, least)
+        whole = fit_panels(self._tabulated, (low, high), groups, least)
         #: A, Q of weights, Q of loads of position, A'.
         self.numbers: Panels = whole.part(slice(0, 3)).with_slope()
         #: Variables and their first derivatives.

@@ -10,12 +10,13 @@ from typing import Any
 import numpy as np
 
 from linkwork.expression.grammar import parse
-from linkwork.expression.tree import Binary, Node, comparisons_in, names_in
+from linkwork.expression.tree import Binary, Node, names_in
 from linkwork.forces.applied import AppliedLoads, load_formulas
 from linkwork.forces.free_bodies import FreeBodies
 from linkwork.forces.geometry import Geometry
 from linkwork.forces.part.index import join_loads
 from linkwork.forces.part.load import apply_load
+from linkwork.forces.switches import held_switches, load_switches, switch_margins
 from linkwork.foundation.arrays import Array
 from linkwork.foundation.errors import KeyWords, key_text
 from linkwork.foundation.frozen import FrozenDict
@@ -44,7 +45,6 @@ class Displaced(Geometry):
 NEAR = 1e-14 * np.array([0.0, 1.0, 1e1, 1e2, 1e3, 1e4])
 FAR = np.array([-1e-3, 1e-3])
 _POLE = 1e3  # times its usual amount: a load that no step can follow
-_RISING = ("<", ">=")  # comparisons whose margin is the right side minus the left one
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -85,9 +85,11 @@ class Reduction:
         self.description, self.place = description, place
         self.motor = description.inputs[0].motor
         self.switches: Mapping[Node, float] = FrozenDict()
-        #: Whether joints have friction.
+        #: Whether joints have friction; a rolling wheel has adhesion, which takes no energy.
         self.rubs = isinstance(description, Linkage) and any(
-            description.numbers(own.mu) > 0.0 for own in description.friction.values()
+            description.numbers(own.mu) > 0.0
+            for name, own in description.friction.items()
+            if not any("slips" in p.lets_go and name in p.names for p in description.parts)
         )
 
     @cached_property
@@ -106,8 +108,7 @@ class Reduction:
     @cached_property
     def comparisons(self) -> tuple[Binary, ...]:
         """What can switch loads."""
-        found = (each for formula in self.formulas for each in comparisons_in(formula))
-        return tuple(dict.fromkeys(found))
+        return load_switches(self.description)
 
     @cached_property
     def names(self) -> frozenset[str]:
@@ -154,22 +155,12 @@ class Reduction:
         return self.motor.curve(kind, own.numbers, own.length)
 
     def margins(self, applied: AppliedLoads) -> list[Array]:
-        """Of all comparisons, (B,) each: positive where "<" or ">" is true, "<=" or ">=" is not.
-
-        So 0 is on its right side.
-        """
-        formula = applied.formula
-        return [
-            (formula(each.left) - formula(each.right)) * (-1.0 if each.operator in _RISING else 1.0)
-            for each in self.comparisons
-        ]
+        """Of all switches, (B,) each."""
+        return switch_margins(self.comparisons, applied)
 
     def switch(self, margins: Sequence[float]) -> None:
-        """Let every comparison have the value that belongs to its margin."""
-        values: dict[Node, float] = {}
-        for each, margin in zip(self.comparisons, margins, strict=True):
-            values[each] = float((margin > 0.0) == (each.operator in ("<", ">")))
-        self.switches = FrozenDict(values)
+        """Let every switch have the value that belongs to its margin."""
+        self.switches = held_switches(self.comparisons, margins)
 
     def failing_load(self, there: Geometry, before: Geometry) -> str:
         """Why a load stops the motion ``there``, in the rows in which no step succeeds; "" if none

@@ -10,13 +10,21 @@ from linkwork.dynamics.events import Bound
 from linkwork.foundation.arrays import Array
 from linkwork.foundation.errors import ExpressionError, InputError, choices
 from linkwork.foundation.names import canonical
+from linkwork.foundation.policy import ChangePointPolicy
 from linkwork.mechanism.dimensions import Number
 from linkwork.mechanism.loaded import LoadedBodies
 from linkwork.mechanism.speed import speed_per_second
 from linkwork.motion.model import Model
 from linkwork.motion.stop_quantities import bounded_quantity
 
-__all__ = ["bounds_of", "check_loaded", "check_masses_move", "model_name", "start_speeds"]
+__all__ = [
+    "bounds_of",
+    "check_loaded",
+    "check_masses_move",
+    "model_name",
+    "start_speeds",
+    "straight_or_stop",
+]
 
 _MASSLESS = 1e-12  # of the largest eigenvalue of the matrix of masses: none
 
@@ -24,6 +32,20 @@ _MASSLESS = 1e-12  # of the largest eigenvalue of the matrix of masses: none
 def model_name(model: Model) -> str:
     """The mechanism's name in quotation marks."""
     return f'"{model.description.name}"'
+
+
+def straight_or_stop(change_points: str | ChangePointPolicy) -> ChangePointPolicy:
+    """The policy at change points of a motion in time, which takes no other branch.
+
+    Raises
+    ------
+    InputError
+        For another policy.
+    """
+    policy = ChangePointPolicy.of(change_points)
+    if policy is ChangePointPolicy.TURN:
+        raise InputError('a simulation goes straight on or stops: change_points "stop", "straight"')
+    return policy
 
 
 def check_loaded(model: Model) -> LoadedBodies:

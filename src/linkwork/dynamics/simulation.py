@@ -7,11 +7,12 @@ from dataclasses import replace
 
 import numpy as np
 
+from linkwork.dynamics.contacts import with_contacts, with_flywheels
 from linkwork.dynamics.curve import PositionCurve, curve_of
 from linkwork.dynamics.input_simulation import simulate_inputs
 from linkwork.dynamics.reduction import Forcing, Reduction
 from linkwork.dynamics.sample import Sample
-from linkwork.dynamics.simulated import bounds_of, check_loaded, start_speeds
+from linkwork.dynamics.simulated import bounds_of, check_loaded, start_speeds, straight_or_stop
 from linkwork.dynamics.travel import Travel
 from linkwork.foundation.arrays import Array
 from linkwork.foundation.errors import InputError, KeyWords, key_text
@@ -80,15 +81,14 @@ def simulate(
     """
     check_flags(progress, certify=certify)
     times = _times(until, step)
-    policy = ChangePointPolicy.of(change_points)
-    if policy is ChangePointPolicy.TURN:
-        raise InputError('a simulation goes straight on or stops: change_points "stop", "straight"')
+    policy = straight_or_stop(change_points)
     check_loaded(model)
     if len(model.description.inputs) > 1:
-        return simulate_inputs(
+        several = simulate_inputs(
             model.untimed or model, times=times, at=at, start_speed=start_speed, policy=policy,
             certify=certify, forced=bool(forcing), place=place, progress=progress,
         )  # fmt: skip
+        return with_contacts(model, with_flywheels(model, several))
     speed = float(start_speeds(model, start_speed)[0])
     reduction, curve = start_of(model, at, policy, certify, forcing, place)
     travel = Travel(
@@ -101,7 +101,8 @@ def simulate(
     _check_inside(travel)
     travel.begin(speed)
     travel.run()
-    return _motion(travel, certify)
+    motion = with_flywheels(model, _motion(travel, certify))
+    return with_contacts(model, motion, *_states(travel))
 
 
 def start_of(
@@ -178,6 +179,25 @@ def _motion(travel: Travel, certify: bool) -> Motion:
         return motion
     lost = np.array([*(sample.lost for sample in samples), *([np.nan] * len(missing))])
     return replace(motion, friction_work=lost)
+
+
+def _states(travel: Travel) -> tuple[Array, Callable[[Array], Motion]]:
+    """Times while the motion moves, at all nodes of its steps, and the motion at such times."""
+    nodes = [step.nodes[step.nodes <= end] for _, _, step, end in travel.steps]
+    ends = np.array([end for _, _, _, end in travel.steps])
+
+    def at(times: Array) -> Motion:
+        samples = []
+        for t in times:
+            number, lap, step, _ = travel.steps[min(int(ends.searchsorted(t)), len(ends) - 1)]
+            s, speed, bend = (float(x[0]) for x in step.at(np.array([t])))
+            samples.append(
+                Sample(t=float(t), leg=number, lap=lap, s=s, speed=speed, acceleration=bend)
+            )
+        rows = _rows(travel, samples, False)
+        return motion_of_rows(travel.reduction.named, rows, "", np.ones(len(times), dtype=bool))
+
+    return np.concatenate([*nodes, np.zeros(0)]), at
 
 
 def _rows(travel: Travel, samples: Sequence[Sample], certify: bool) -> SolvedRows:

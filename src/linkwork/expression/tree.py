@@ -15,7 +15,8 @@ __all__ = [
     "comparisons_in",
     "constants_in",
     "names_in",
-    "with_comparisons",
+    "switches_in",
+    "with_switches",
 ]
 
 
@@ -118,20 +119,60 @@ def constants_in(node: Node, known: Container[str]) -> Iterator[Node]:
             return
 
 
-def with_comparisons(node: Node, values: Mapping[Node, float]) -> Node:
-    """The formula with some of its comparisons replaced by numbers."""
+def _choice(call: Call) -> tuple[Binary, Node, Node] | None:
+    """The comparison that a kink of a function follows, and its values where it holds or not."""
+    zero, quarter = Number(0.0), Call("atan2", (Number(1.0), Number(0.0)))
+    match call.function, call.arguments:
+        case "abs", (x,):
+            return Binary(">=", x, zero), x, Negative(x)
+        case "atan2", (y, x):  # each continues the angle beyond ± half a turn
+            above = Binary("+", Call("atan2", (Negative(x), y)), quarter)
+            below = Binary("-", Call("atan2", (x, Negative(y))), quarter)
+            return Binary(">=", y, zero), above, below
+        case "max" | "min", (*several, last):
+            first = several[0] if len(several) == 1 else Call(call.function, tuple(several))
+            operator = ">=" if call.function == "max" else "<="
+            return Binary(operator, first, last), first, last
+    return None
+
+
+def switches_in(node: Node) -> Iterator[Binary]:
+    """The comparisons at which a formula jumps or has a kink, inner ones first."""
+    match node:
+        case Negative():
+            yield from switches_in(node.operand)
+        case Binary():
+            yield from switches_in(node.left)
+            yield from switches_in(node.right)
+            if node.operator in ("<", "<=", ">", ">="):
+                yield node
+        case Call():
+            choice = _choice(node)
+            for argument in (choice[0].left, choice[0].right) if choice else node.arguments:
+                yield from switches_in(argument)
+            if choice:
+                if node.function == "atan2":
+                    yield from switches_in(node.arguments[1])
+                yield choice[0]
+
+
+def with_switches(node: Node, values: Mapping[Node, float]) -> Node:
+    """The formula with some of its comparisons replaced by numbers, and kinks by their pieces."""
     if not values:
         return node
     if node in values:
         return Number(values[node])
     match node:
         case Negative():
-            return replace(node, operand=with_comparisons(node.operand, values))
+            return replace(node, operand=with_switches(node.operand, values))
         case Binary():
-            left = with_comparisons(node.left, values)
-            return replace(node, left=left, right=with_comparisons(node.right, values))
+            left = with_switches(node.left, values)
+            return replace(node, left=left, right=with_switches(node.right, values))
         case Call():
-            inner = tuple(with_comparisons(argument, values) for argument in node.arguments)
+            choice = _choice(node)
+            if choice and choice[0] in values:
+                return with_switches(choice[1] if values[choice[0]] else choice[2], values)
+            inner = tuple(with_switches(argument, values) for argument in node.arguments)
             return replace(node, arguments=inner)
         case _:
             return node

@@ -11,7 +11,7 @@ import numpy as np
 
 from linkwork.expression.grammar import CONSTANTS, parse
 from linkwork.expression.jets import Jet, evaluate
-from linkwork.expression.tree import Node, names_in, with_comparisons
+from linkwork.expression.tree import Node, names_in, with_switches
 from linkwork.forces.geometry import Geometry
 from linkwork.foundation.arrays import Array, BoolArray, ComplexArray
 from linkwork.foundation.elementwise import cis
@@ -96,7 +96,7 @@ class AppliedLoads:
     def formula(self, tree: Node) -> Array:
         """The value of a formula in all rows, (B,)."""
         geometry, model = self.geometry, self.geometry.model
-        tree = with_comparisons(tree, self.switches)
+        tree = with_switches(tree, self.switches)
         names = {node.name: self._named(node.name) for node in names_in(tree)}
         with np.errstate(all="ignore"):
             known = {name: jet for name, jet in names.items() if jet is not None}

@@ -3,16 +3,21 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from dataclasses import replace
+from functools import cached_property
 
 import numpy as np
 
 from linkwork.equations.input_motion import TIME
 from linkwork.forces.applied import load_formulas
 from linkwork.forces.quantities import check_formulas
+from linkwork.forces.switch_places import switch_places
 from linkwork.forces.system import solve_forces
 from linkwork.foundation.arrays import Array
 from linkwork.foundation.errors import InputError, KeyWords, key_text
+from linkwork.foundation.frozen import ComputedDict
 from linkwork.foundation.value_types import check_class
+from linkwork.motion.between_rows import between_rows
 from linkwork.motion.in_time import model_in_time
 from linkwork.motion.model import Model
 from linkwork.motion.own_motion import check_own_motion
@@ -20,6 +25,8 @@ from linkwork.results.motion import Motion
 from linkwork.results.position import Position
 from linkwork.results.quantities.definition import Solved
 from linkwork.results.reactions import ForceStatus, Reactions
+
+_BESIDE = 1e-13  # of the table: a row just beside a switch, that rounding does not bring behind it
 
 __all__ = ["forces_of_motion", "forces_of_position"]
 
@@ -43,7 +50,36 @@ def forces_of_motion(model: Model, motion: Motion, place: KeyWords = key_text) -
     if model.untimed is None and TIME in motion.inputs:  # a simulated motion
         model = model_in_time(model)
     check_own_motion(model, motion)
-    return _reactions(model, motion, motion.inputs, motion.input_units, (len(motion),), place)
+    found = _reactions(model, motion, motion.inputs, motion.input_units, (len(motion),), place)
+    if TIME in motion.inputs or any(motion.limit) or not motion.found.all() or len(motion) < 2:
+        return found
+    names = [*found.inputs, *found.values]
+    return replace(found, at_switches=ComputedDict(names, _SwitchValues(model, motion).of))
+
+
+class _SwitchValues:
+    """Quantities on both sides of all switches of loads in a table, computed at first need."""
+
+    def __init__(self, model: Model, motion: Motion) -> None:
+        self.model, self.motion = model, motion
+
+    @cached_property
+    def rows(self) -> Solved | None:
+        """The positions; ``None`` if nothing switches."""
+        lead = list(self.motion.inputs).index(self.model.motion_quantities.names.lead)
+        t = np.asarray(list(self.motion.inputs.values())[lead]) * self.model.input_scale[lead]
+        at = between_rows(self.model, self.motion)
+        before, behind = switch_places(self.model, at, np.sort(t))
+        away = _BESIDE * float(np.ptp(t))
+        places = np.clip(np.concatenate([before - away, behind + away]), t.min(), t.max())
+        return at(np.sort(places)) if len(places) else None
+
+    def of(self, name: str) -> Array:
+        """A quantity, (2K,)."""
+        if self.rows is None:
+            return np.zeros(0)
+        found: Array = self.model.quantities.find(name).values(self.rows, self.model.speed)
+        return found
 
 
 def _reactions(

@@ -141,6 +141,8 @@ class Model:
         released = {part.variable for part in equations.redundant}
         inputs = {v.name: Kind(v.kind) for v in equations.inputs}
         lead = equations.inputs[leading_input(self.rows)[0]].name if inputs else ""
+        own = () if self.untimed is None else self.untimed.equations.inputs
+        driven = own[0].name if len(own) == 1 else ""
         return Quantities(
             MechanismNames(
                 units=self.units,
@@ -159,6 +161,7 @@ class Model:
                 points=tuple(getattr(self.description, "points", {})),
                 by=self.derivative_unit,
                 lead=lead,
+                driven=driven,
                 series=self.derivatives,
             )
         )

@@ -26,6 +26,9 @@ class Equilibrium:
         the least of ``frequencies``.
     frequencies : tuple of float
         Those of all its modes, rising; one for each input.
+    indifferent : str
+        ``near`` where the loads balance at neighbouring positions too, ``everywhere`` where they
+        balance at all positions, else empty.
 
     Examples
     --------
@@ -45,3 +48,4 @@ class Equilibrium:
     stable: bool
     frequency: float
     frequencies: tuple[float, ...]
+    indifferent: str = ""

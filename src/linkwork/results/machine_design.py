@@ -85,11 +85,14 @@ class MotorCheck:
     Parameters
     ----------
     peak, rms, mean : float
-        Of the effort over a turn; of the peak the size.
+        Of the effort over a turn, or the whole time of a law; of the peak the size.
     peak_at : float
-        The input value of the peak.
+        The input value of the peak; its time under a law.
     available : float
-        What the motor gives at the input's speed, on the line from ``stall`` to ``free_speed``.
+        What the motor gives at the input's speed there, on the line from ``stall`` to
+        ``free_speed``.
+    reserve : float
+        The least that the motor gives beyond the size of the effort; negative if it is too weak.
     rated : float, optional
         What it gives without end.
     power : float
@@ -110,14 +113,16 @@ class MotorCheck:
     rms: float
     mean: float
     available: float
+    reserve: float
     rated: float | None
     power: float
     units: Mapping[str, str]
 
     @property
     def fits(self) -> bool:
-        """Whether the peak is available, and the root mean square within the rated effort."""
-        return self.peak <= self.available and (self.rated is None or self.rms <= self.rated)
+        """Whether the effort is available everywhere, and its root mean square within the rated."""
+        enough = self.reserve >= -_NONE * self.peak
+        return enough and (self.rated is None or self.rms <= self.rated)
 
     def __repr__(self) -> str:
         return str(self.summary)
@@ -130,6 +135,7 @@ class MotorCheck:
         rows = [
             ("peak", f"{self.peak:.6g} {effort} at {self.peak_at:.6g} {self.units['input']}"),
             ("available", f"{self.available:.6g} {effort} at this speed"),
+            ("reserve", f"{self.reserve:.6g} {effort} at least"),
             ("rms", f"{self.rms:.6g} {effort}"),
             *rated,
             ("mean", f"{self.mean:.6g} {effort}"),

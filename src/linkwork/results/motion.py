@@ -36,7 +36,7 @@ __all__ = ["Limit", "LimitKind", "Motion", "OutputLimit"]
 _FEW_ROWS = 4000  # of motions that are drawn
 
 
-@internal("quantities", "units", "skeleton", "quantity", "own", "place")
+@internal("quantities", "units", "skeleton", "quantity", "own", "place", "energy")
 @dataclass(frozen=True, kw_only=True, eq=False, repr=False)
 class Motion:
     """The positions of a mechanism over a table of N input values.
@@ -102,6 +102,8 @@ class Motion:
         Why no position was found at the guess.
     friction_work : array (N,), optional
         Of a simulation with friction: the energy that it has taken so far.
+    flywheel_energy : array (N,), optional
+        Of a simulation: the kinetic energy of the inertia on its inputs.
 
     Examples
     --------
@@ -147,12 +149,14 @@ class Motion:
     q: Array
     failure: Failure | None = None
     friction_work: Array | None = None
+    flywheel_energy: Array | None = None
 
     def __post_init__(self) -> None:
         for field in (*EVIDENCE, "added", "q"):
             object.__setattr__(self, field, read_only(getattr(self, field)))
-        if self.friction_work is not None:
-            object.__setattr__(self, "friction_work", read_only(self.friction_work))
+        for field in ("friction_work", "flywheel_energy"):
+            if getattr(self, field) is not None:
+                object.__setattr__(self, field, read_only(getattr(self, field)))
         inputs = {name: read_only(values) for name, values in self.inputs.items()}
         object.__setattr__(self, "inputs", FrozenDict(inputs))
 
@@ -177,6 +181,12 @@ class Motion:
         if asked.group is Group.INPUT and asked.rate is None:
             return self.inputs[asked.name]
         return asked.values(self, self.speed)
+
+    @property
+    def energy(self) -> Array:
+        """The kinetic and stored energy of a loaded mechanism, flywheels included, (N,)."""
+        found: Array = self["kinetic_energy"] + self["stored_energy"]
+        return found if self.flywheel_energy is None else found + self.flywheel_energy
 
     def quantity(self, name: str) -> Asked:
         """A quantity or rate by name, with its unit.

@@ -80,6 +80,8 @@ class Reactions:
         where a rolling wheel would need more adhesion.
     undefined : Mapping[str, array of bool]
         Where formulas of loads have no finite value, by the place of the load.
+    at_switches : Mapping[str, array]
+        Inputs and quantities of a table just before and just behind every switch of a load.
     proved : array of bool
         Whether it is proved that friction leaves an equilibrium, or where ``SELF_LOCKING``, none.
 
@@ -106,6 +108,7 @@ class Reactions:
     slipping: Mapping[str, BoolArray]
     undefined: Mapping[str, BoolArray]
     proved: BoolArray
+    at_switches: Mapping[str, Array] = FrozenDict()
 
     def __post_init__(self) -> None:
         for name in ("inputs", "values", "undetermined", "lifted", "slipping", "undefined"):

@@ -76,6 +76,7 @@ class Belt(WheelPair):
         Key("crossed", Flag(), "The belt crosses itself: the wheels turn in opposite directions"),
     )
     kind = JointKind("B", 2, "belt")
+    lets_go = ("goes slack",)
     disc_kind: ClassVar[str] = "pulley"
 
     crossed: bool = False

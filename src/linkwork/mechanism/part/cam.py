@@ -154,6 +154,7 @@ class Cam(NamedPart):
         Key("profile", COORDINATES, "Or the outline, in the cam's frame about its centre"),
     )
     kind = JointKind("C", 2, "cam")
+    lets_go = ("lifts off",)
 
     cam: str
     center: str

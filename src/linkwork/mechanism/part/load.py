@@ -25,7 +25,8 @@ class Load(Part):
 
     Where several links share the point, the force acts on the pin itself unless a link is given.
     Formulas may contain the mechanism's quantities, their rates and the time ``t``, and
-    comparisons, which are 1 or 0: ``"-500*(t < 0.1)"``.
+    comparisons, which are 1 or 0: ``"-500*(t < 0.1)"``. A load on ground moves nothing: with its
+    opposite on a piston, as of the gas in an engine, it shakes nothing.
 
     Parameters
     ----------
@@ -93,11 +94,11 @@ class Load(Part):
             if name is not None and name not in known:
                 what = "point" if field == "point" else "link"
                 add(f'{what} "{name}" is not defined {choices(f"{what}s", known, name)}', field)
-        fixed = loaded.carried.get(GROUND, ())
-        if self.link == GROUND:
-            add(f"is fixed: the {noun} has no effect, remove it", "link")
-        elif self.link is None and self.point in fixed:
-            add(f"{self.point} is fixed: the force has no effect, remove it", "point")
+        # beside a load on a moving link it may be that one's opposite, as of the gas in an engine
+        others: tuple[Load, ...] = getattr(loaded, "loads", ())
+        if all(load._on_ground(loaded) for load in (self, *others)):
+            field, what = ("link", "") if self.link == GROUND else ("point", f"{self.point} ")
+            add(f"{what}is fixed: the {noun} has no effect, remove it", field)
         if self.turns_with == GROUND:
             add("does not turn: leave it out, as the axes of ground are the default", "with")
         carried = loaded.carried.get(self.link or "", (self.point,))
@@ -118,6 +119,11 @@ class Load(Part):
                         add(f"{amount:g} is too large: at most {LARGEST:g}", *key)
             except ExpressionError as error:
                 add(str(error), *key)
+
+    def _on_ground(self, loaded: LoadedBodies) -> bool:
+        return self.link == GROUND or (
+            self.link is None and self.point in loaded.carried.get(GROUND, ())
+        )
 
     @property
     def formulas(self) -> tuple[tuple[tuple[str | int, ...], Number], ...]:

@@ -42,13 +42,15 @@ class Part:
     """A part of a mechanism other than points and links.
 
     ``title`` and ``doc`` describe its kind on the page and in the schema, ``keys`` are those of its
-    table, ``kind`` is the kind of joint, if the part is a joint of two links.
+    table, ``kind`` is the kind of joint, if the part is a joint of two links. ``lets_go``: how it
+    may cease to be one, by a pull where it can only push, or beyond its friction.
     """
 
     title: ClassVar[str]
     doc: ClassVar[str]
     keys: ClassVar[tuple[FileKey, ...]]
     kind: ClassVar[JointKind | None] = None
+    lets_go: ClassVar[tuple[str, ...]] = ()
     holders: ClassVar[str] = "joints"  # parts that may contradict an angle it fixes
 
     def __post_init__(self) -> None:

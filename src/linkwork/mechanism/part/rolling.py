@@ -101,6 +101,7 @@ class Rolling(NamedPart):
         Key("inside", Flag(), "The smaller of wheel and circle is inside the larger one"),
     )
     kind = JointKind("W", 1, "rolling contact")
+    lets_go = ("lifts off", "slips")
 
     wheel: str
     center: str

@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
 from linkwork.foundation.arrays import Array
 from linkwork.foundation.certification import Certification
+from linkwork.foundation.frozen import FrozenDict
 from linkwork.foundation.status import Status
 from linkwork.results.branch_end import is_in_table
 from linkwork.results.listing.column import Column
@@ -151,14 +152,27 @@ class _Range:
     value: Array
 
 
-def range_columns(motion: Motion, columns: Sequence[str] = (), decimals: int = 6) -> list[Column]:
-    """Smallest and largest value of every unknown, output and traced point, and where."""
+def range_columns(
+    motion: Motion,
+    columns: Sequence[str] = (),
+    decimals: int = 6,
+    between: Mapping[str, Array] = FrozenDict(),
+) -> list[Column]:
+    """Smallest and largest value of every unknown, output and traced point, and where.
+
+    ``between``: further values of inputs and columns, in the same order.
+    """
     traced = (f"{point}.{axis}" for point in motion.skeleton.traced for axis in "xy")
     names = columns or [*motion.unknowns, *motion.riding, *motion.outputs, *traced]
-    found = [_Range(motion.quantity(name), motion[name]) for name in names]
+    none = np.zeros(0)
+    found = [
+        _Range(motion.quantity(name), np.append(motion[name], between.get(name, none)))
+        for name in names
+    ]
     if not found:
         return []
-    _, inputs = _lead(motion)
+    lead, inputs = _lead(motion)
+    inputs = np.append(inputs, between.get(lead, none))
     low = [int(np.argmin(_filled(series.value, np.inf))) for series in found]
     high = [int(np.argmax(_filled(series.value, -np.inf))) for series in found]
     numbers = [

@@ -53,6 +53,8 @@ class MechanismNames:
         The unit of the input in derivatives: ``rad`` or the length unit; "" without an input.
     lead : str
         The leading input, the first one that changes from row to row; "" without an input.
+    driven : str
+        Where time leads: the input that moves the mechanism, "" if several do.
     further : tuple of RowQuantity
         Quantities that this mechanism alone has, of no part: those of its forces.
     series : callable, optional
@@ -71,6 +73,7 @@ class MechanismNames:
     points: tuple[str, ...] = ()
     by: str = ""
     lead: str = ""
+    driven: str = ""
     further: tuple[RowQuantity, ...] = ()
     series: Callable[[Solved, Any, int], Array] | None = None
 

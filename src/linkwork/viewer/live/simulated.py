@@ -150,7 +150,7 @@ def _energy(motion: Motion) -> str:
     """The energy at both ends, without a motor and loads the same."""
     if "load_power" not in motion.quantities.derived:
         return ""
-    energy = motion["kinetic_energy"] + motion["stored_energy"]
+    energy = motion.energy
     known = energy[np.isfinite(energy)]
     if not len(known):
         return ""
