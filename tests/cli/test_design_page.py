@@ -56,7 +56,7 @@ def test_answers_of_a_designer_fit_into_a_terminal(run: Run) -> None:
     assert done.exit_code == 0
     assert max(map(len, done.stdout.splitlines())) <= 80
     assert "The motor is too weak" in done.stdout
-    assert "inertia  4.33706e+07 kg·mm²" in done.stdout
+    assert "inertia  4.29842e+07 kg·mm²" in done.stdout
     data = json.loads(run("design", "crank-press", *asked, "--json").stdout)
     assert data["motor"]["fits"] is False
     assert len(data["harmonics"]["amplitude"]) == 8

@@ -52,7 +52,7 @@ class DynamicMechanism(LoadedMechanism):
         --------
         >>> import linkwork as lw
         >>> round(lw.example("crank-press").flywheel(0.05).inertia / 1e6, 1)  # kg m²
-        43.4
+        43.0
         """
         return design.flywheel(self.model, self._turn(motion), fluctuation)
 

@@ -49,7 +49,7 @@ class Flywheel:
     >>> import linkwork as lw
     >>> wheel = lw.example("crank-press").flywheel(0.05)
     >>> round(wheel.energy), wheel.units["inertia"]
-    (342440, 'kg·mm²')
+    (339390, 'kg·mm²')
     """
 
     fluctuation: float
@@ -166,7 +166,7 @@ class Harmonics:
     >>> import linkwork as lw
     >>> found = lw.example("crank-press").harmonics("shaking.y", 2)
     >>> found.amplitude.round(1)
-    array([4665.2, 4551.3])
+    array([4584.2, 4489.6])
     """
 
     of: str
