@@ -14,6 +14,7 @@ from linkwork.cli.terminal import bad, fields, good, sentence, title_lines
 from linkwork.cli.text_table import table_lines
 from linkwork.results.equilibrium import Equilibrium
 from linkwork.results.listing.column import Column
+from linkwork.results.listing.motion_listing import whole_energy
 from linkwork.results.listing.number_text import fixed, significant
 from linkwork.results.motion import Motion
 from linkwork.results.table import Table
@@ -44,7 +45,7 @@ def _facts(motion: Motion) -> Iterator[tuple[str, str]]:
             yield "event", f"{word}, {count} times" if count > 1 else word
     yield "certified", f"{int(motion.certified.sum())} of {int(motion.found.sum())}"
     if "load_power" in motion.quantities.derived:
-        energy = motion.energy
+        energy = whole_energy(motion)
         fine = energy[np.isfinite(energy)]
         if len(fine):
             unit = motion.quantity("kinetic_energy").unit

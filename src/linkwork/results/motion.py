@@ -36,7 +36,7 @@ __all__ = ["Limit", "LimitKind", "Motion", "OutputLimit"]
 _FEW_ROWS = 4000  # of motions that are drawn
 
 
-@internal("quantities", "units", "skeleton", "quantity", "own", "place", "energy")
+@internal("quantities", "units", "skeleton", "quantity", "own", "place")
 @dataclass(frozen=True, kw_only=True, eq=False, repr=False)
 class Motion:
     """The positions of a mechanism over a table of N input values.
@@ -181,12 +181,6 @@ class Motion:
         if asked.group is Group.INPUT and asked.rate is None:
             return self.inputs[asked.name]
         return asked.values(self, self.speed)
-
-    @property
-    def energy(self) -> Array:
-        """The kinetic and stored energy of a loaded mechanism, flywheels included, (N,)."""
-        found: Array = self["kinetic_energy"] + self["stored_energy"]
-        return found if self.flywheel_energy is None else found + self.flywheel_energy
 
     def quantity(self, name: str) -> Asked:
         """A quantity or rate by name, with its unit.

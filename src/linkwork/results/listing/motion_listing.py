@@ -32,6 +32,7 @@ __all__ = [
     "range_columns",
     "range_text",
     "status_fields",
+    "whole_energy",
 ]
 
 _MOST_RUNS = 4  # ranges of failed rows that are listed
@@ -198,6 +199,12 @@ def range_columns(
         places(high),
         Column(header="unit", cells=[s.quantity.unit for s in found]),
     ]
+
+
+def whole_energy(motion: Motion) -> Array:
+    """The kinetic and stored energy of a loaded mechanism, flywheels included, (N,)."""
+    found: Array = motion["kinetic_energy"] + motion["stored_energy"]
+    return found if motion.flywheel_energy is None else found + motion.flywheel_energy
 
 
 def _kind(asked: Asked) -> Kind:

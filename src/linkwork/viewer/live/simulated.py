@@ -10,6 +10,7 @@ import numpy as np
 from linkwork.foundation.errors import ExpressionError, InputError, MechanismError
 from linkwork.mechanism.description import Description
 from linkwork.mechanism.loaded import LoadedBodies
+from linkwork.results.listing.motion_listing import whole_energy
 from linkwork.results.motion import Motion
 from linkwork.viewer.live import events as tell, requests as ask
 from linkwork.viewer.live.subject import Subject
@@ -150,7 +151,7 @@ def _energy(motion: Motion) -> str:
     """The energy at both ends, without a motor and loads the same."""
     if "load_power" not in motion.quantities.derived:
         return ""
-    energy = motion.energy
+    energy = whole_energy(motion)
     known = energy[np.isfinite(energy)]
     if not len(known):
         return ""
