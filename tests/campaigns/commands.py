@@ -376,6 +376,12 @@ class _Watch:
             if hasattr(module, "progress"):
                 yield patch.object(module, "progress", self.progress)
         yield patch.object(import_module("linkwork.cli.picture"), "progress", self.progress)
+        shown = contextlib.contextmanager(self._study)
+        yield patch.object(import_module("linkwork.cli.study"), "study_progress", shown)
+
+    def _study(self, quiet: bool) -> Iterator[Callable[[object], None]]:
+        with self.progress("study"):
+            yield lambda progress: None
 
 
 def command_campaign(part: int) -> tuple[Counter[str], list[str]]:
