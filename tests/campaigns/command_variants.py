@@ -62,7 +62,7 @@ def variant_text(name: str, variant: str, *, loaded: bool) -> str:
 
 
 def _coarsen(which: Data, turn: float) -> None:
-    ends = [which.get("from"), which.get("to")]
+    ends: list[Any] = [which.get("from"), which.get("to")]
     if all(isinstance(end, int | float) for end in ends) and ends[0] != ends[1]:
         which["step"] = (ends[1] - ends[0]) / (_ROWS - 1)
     elif not {"law", "step", "from"} & {*which} and "link" in which:

@@ -28,6 +28,7 @@ from linkwork.kernels.program.program import SOURCES, Op
 from linkwork.motion.by_kernels import block_parts
 
 PLACES = 5
+_CODE_FILES: Any = CodeFiles  # whose methods have no types
 
 
 @pytest.fixture(autouse=True)
@@ -191,17 +192,17 @@ def test_code_of_a_signature_is_never_read_for_another_one(tmp_path: Path) -> No
     """
 
     def files() -> Any:
-        return CodeFiles(cache_path=str(tmp_path), filename_base="f-1", source_stamp="now")
+        return _CODE_FILES(cache_path=str(tmp_path), filename_base="f-1", source_stamp="now")
 
     other, read = files(), []
 
     def enter(known: dict[str, str]) -> None:
         other.save("integers", "code for integers")
-        CodeFiles._save_index(late, known)
+        _CODE_FILES._save_index(late, known)
 
     def write(name: str, code: str) -> None:
         read.append(files().load("numbers"))
-        CodeFiles._save_data(late, name, code)
+        _CODE_FILES._save_data(late, name, code)
 
     late = files()
     late._save_index, late._save_data = enter, write
@@ -214,7 +215,7 @@ def test_code_of_a_signature_is_never_read_for_another_one(tmp_path: Path) -> No
 
 def test_code_of_former_sources_is_not_read_and_goes(tmp_path: Path) -> None:
     def files(stamp: str) -> Any:
-        return CodeFiles(cache_path=str(tmp_path), filename_base="f-1", source_stamp=stamp)
+        return _CODE_FILES(cache_path=str(tmp_path), filename_base="f-1", source_stamp=stamp)
 
     files("before").save("numbers", "former code")
     assert files("now").load("numbers") is None

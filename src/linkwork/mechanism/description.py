@@ -232,10 +232,9 @@ class Description:
 
     def _given(self, which: Input, field: str) -> float | None:
         """An end or the step of an input's table; of times it may be written at any input."""
-        sharing = [w for w in self.inputs if w.law is not None] if which.law is not None else []
+        sharing = [w for w in self.inputs if w.law is not None and which.law is not None]
         numbers = (getattr(w, field) for w in (which, *sharing))
-        found = next((number for number in numbers if number is not None), None)
-        return None if found is None else self.numbers(found)
+        return next((self.numbers(number) for number in numbers if number is not None), None)
 
     def falls(self, which: Input) -> bool:
         """Whether the input decreases, according to its speed or else its table."""
@@ -258,9 +257,7 @@ class Description:
             if which.law is None and len(self.rows(which)) > 1:
                 message = "is missing: time drives the other inputs; without a law it is constant"
                 problems.add((*key, "law"), message)
-            if which.law is None:
-                continue
-            if self._range(which) != self._range(timed[0]):
+            if which.law is not None and self._range(which) != self._range(timed[0]):
                 problems.add(key, "has other times than the first input: they share one table")
             if which is given[0]:
                 _check_steps(self, which, key, problems)
@@ -320,8 +317,7 @@ def _check_law(description: Description, which: Input, key: Key, problems: Probl
             problems.add((*key, "law", *below), message)
     fields = {"from": which.start, "to": which.stop, "step": which.step, "begin": which.begin}
     for field, number in fields.items():
-        if number is not None:
-            numbers.check_number(problems.add, (*key, field), number)
+        numbers.check_number(problems.add, (*key, field), 0 if number is None else number)
 
 
 def declared(table: str, names: Iterable[str]) -> Iterator[tuple[Key, str]]:

@@ -82,14 +82,16 @@ class CodeFiles(IndexDataCacheFile):
 
     def save(self, key: object, data: object) -> None:
         """Write the code, then enter it."""
-        known: dict[object, str] = self._load_index()
-        if not known and Path(self._index_path).exists():  # the sources have changed
-            for stale in Path(self._cache_path).glob(f"{Path(self._index_name).stem}.*.nbc"):
+        file: Any = self  # whose methods have no types
+        index = Path(file._index_path)
+        known: dict[object, str] = file._load_index()
+        if not known and index.exists():  # the sources have changed
+            for stale in index.parent.glob(f"{index.stem}.*.nbc"):
                 stale.unlink(missing_ok=True)
-        digest = hashlib.sha256(self._dump((self._source_stamp, key))).hexdigest()[:16]
-        name = known.get(key) or f"{Path(self._index_name).stem}.{digest}.nbc"
-        self._save_data(name, data)
-        self._save_index({**self._load_index(), key: name})
+        digest = hashlib.sha256(file._dump((file._source_stamp, key))).hexdigest()[:16]
+        name = known.get(key) or f"{index.stem}.{digest}.nbc"
+        file._save_data(name, data)
+        file._save_index({**file._load_index(), key: name})
 
 
 class _SourcesCache(FunctionCache):
@@ -101,7 +103,8 @@ class _SourcesCache(FunctionCache):
 
     def __init__(self, function: Callable[..., object]) -> None:
         super().__init__(function)  # type: ignore[no-untyped-call]
-        self._cache_file = CodeFiles(
+        files: Any = CodeFiles
+        self._cache_file = files(
             cache_path=self._cache_path,
             filename_base=self._impl.filename_base,
             source_stamp=(self._impl.locator.get_source_stamp(), sources_digest()),
