@@ -104,7 +104,7 @@ class _SourcesCache(FunctionCache):
     def __init__(self, function: Callable[..., object]) -> None:
         super().__init__(function)  # type: ignore[no-untyped-call]
         files: Any = CodeFiles
-        self._cache_file = files(
+        self._cache_file = files(  # noqa: V101  # Numba reads it
             cache_path=self._cache_path,
             filename_base=self._impl.filename_base,
             source_stamp=(self._impl.locator.get_source_stamp(), sources_digest()),
