@@ -17,6 +17,7 @@ from tests.campaigns.change_points import (
     random_train_campaign,
 )
 from tests.campaigns.circuits import circuit_campaign
+from tests.campaigns.commands import PARTS as COMMANDS, command_campaign
 from tests.campaigns.configurations import configuration_campaign
 from tests.campaigns.dead_points import dead_point_campaign
 from tests.campaigns.defects import defect_campaign
@@ -49,6 +50,7 @@ __all__ = ["CAMPAIGNS", "WHOLE", "Report", "run"]
 _PART = 50
 # every length of train and every mechanism is a part; tasks of poses are solved many at a time
 _OWN_PART = {
+    "commands": 1,
     "goals": 1,
     "gradients": 1,
     "improve": 1,
@@ -177,6 +179,7 @@ CAMPAIGNS: dict[str, tuple[Callable[[int], tuple[Counter[str], list[str]]], int]
     "gradients": (_gradients, EVERY),
     "improve": (improvement_campaign, IMPROVEMENTS),
     "whole-motions": (whole_motion_campaign, MOTIONS),
+    "commands": (command_campaign, COMMANDS),
 }
 #: Those that share the cores themselves: what does the whole campaign, and its usual size.
 WHOLE: dict[str, tuple[Callable[[int], tuple[Counter[str], list[str]]], int]] = {

@@ -6,6 +6,7 @@ import math
 
 import pytest
 
+from linkwork.cli.terminal import fields
 from linkwork.cli.text_table import table_lines
 from linkwork.results.listing.column import Column
 from linkwork.results.listing.number_text import fixed, lengths, short, significant
@@ -89,3 +90,8 @@ def test_rates_have_six_significant_digits(value: float, text: str) -> None:
 
 def test_input_values_look_as_they_were_typed() -> None:
     assert [short(v) for v in (60.0, 0.1 + 0.2, 117.62032123456)] == ["60", "0.3", "117.6203212"]
+
+
+def test_nothing_to_list_has_no_lines() -> None:
+    assert table_lines([]) == []
+    assert fields([]) == []

@@ -262,3 +262,9 @@ def test_bodies_without_mass_and_of_micrometres_have_what_simulators_need() -> N
     assert all(own.mass >= 1e-14 and own.inertia >= 1e-14 for own in bodies)
     assert bodies[1].mass < 1e-3 * bodies[0].mass
     assert "A small mass instead of none, which simulators refuse: coupler." in robot.notes()
+
+
+def test_a_joint_that_rests_has_a_polynomial_that_is_constant() -> None:
+    yoke = read_example("scotch-yoke").changed(name="yoke")
+    text = urdf_of(Robot(yoke.model, yoke.solve()), yoke.sweep(step=360 / 11))
+    assert Tree.fromstring(text).findall("coupling")

@@ -8,6 +8,7 @@ import sys
 from collections.abc import Iterator
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -19,6 +20,7 @@ from linkwork.kernels.march import step_control, sweep_kernel
 from linkwork.kernels.march.sweep_kernel import Steps, SweepKernel
 from linkwork.kernels.program import execution
 from linkwork.kernels.program.code_cache import is_cached, load_compiled
+from linkwork.kernels.program.compiling import CodeFiles
 from linkwork.kernels.program.execution import Execution
 from linkwork.kernels.program.interpreter import LANES, run
 from linkwork.kernels.program.printing import trial_source
@@ -26,6 +28,7 @@ from linkwork.kernels.program.program import SOURCES, Op
 from linkwork.motion.by_kernels import block_parts
 
 PLACES = 5
+_CODE_FILES: Any = CodeFiles  # whose methods have no types
 
 
 @pytest.fixture(autouse=True)
@@ -181,3 +184,41 @@ def test_equations_compiled_before_leave_values_as_they_were() -> None:
 def test_functions_of_compiled_ones_refuse_python() -> None:
     with pytest.raises(TypeError, match="stride is called by compiled functions only"):
         step_control.stride(1.0, 2.0, 0.1)
+
+
+def test_code_of_a_signature_is_never_read_for_another_one(tmp_path: Path) -> None:
+    """One process compiles a function for integers while another one, which began with the same
+    empty folder, is about to write its code for numbers.
+    """
+
+    def files() -> Any:
+        return _CODE_FILES(cache_path=str(tmp_path), filename_base="f-1", source_stamp="now")
+
+    other, read = files(), []
+
+    def enter(known: dict[str, str]) -> None:
+        other.save("integers", "code for integers")
+        _CODE_FILES._save_index(late, known)
+
+    def write(name: str, code: str) -> None:
+        read.append(files().load("numbers"))
+        _CODE_FILES._save_data(late, name, code)
+
+    late = files()
+    late._save_index, late._save_data = enter, write
+    late.save("numbers", "code for numbers")
+    read += [files().load("numbers"), files().load("integers")]
+    assert read[0] is None
+    assert read[1] == "code for numbers"
+    assert read[2] in (None, "code for integers")  # its entry may be lost: it is compiled again
+
+
+def test_code_of_former_sources_is_not_read_and_goes(tmp_path: Path) -> None:
+    def files(stamp: str) -> Any:
+        return _CODE_FILES(cache_path=str(tmp_path), filename_base="f-1", source_stamp=stamp)
+
+    files("before").save("numbers", "former code")
+    assert files("now").load("numbers") is None
+    files("now").save("numbers", "code")
+    assert files("now").load("numbers") == "code"
+    assert len(list(tmp_path.glob("*.nbc"))) == 1

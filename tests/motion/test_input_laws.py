@@ -123,6 +123,78 @@ def test_inputs_have_laws_of_their_own() -> None:
     assert np.abs(balance).max() < 1e-12 * np.abs(forces["energy_rate"]).max()
 
 
+_ARM = """\
+format = 1
+mass = "kg"
+force = "N"
+[points]
+O = [0, 0]
+A = [0, -1]
+B = [-1, -2]
+[links]
+ground = ["O"]
+upper = ["O", "A"]
+lower = ["A", "B"]
+[masses]
+lower = {{ mass = 1, shape = "rod" }}
+[[input]]
+link = "upper"
+law = "-90 + 10*t"
+{first}
+[[input]]
+link = "lower"
+law = [{{ law = "cycloidal", over = "0.8 s", by = 89 }}]
+{second}
+"""
+
+
+@pytest.mark.parametrize(
+    ("first", "second", "rows"),
+    [
+        ("from = 0\nto = 0.8\nstep = 0.01", "", 81),
+        ("", "from = 0\nto = 0.8\nstep = 0.01", 81),
+        ("to = 0.4", "step = 0.01", 41),
+        ("step = 0.05", "step = 0.05", 17),  # a law of segments has an end
+        ("", "", 361),
+    ],
+)
+def test_inputs_with_laws_share_one_table_of_times(first: str, second: str, rows: int) -> None:
+    arm = lw.loads(_ARM.format(first=first, second=second))
+    motion = arm.sweep()
+    assert len(motion) == rows
+    assert motion.certified.all()
+    t = motion["t"]
+    # rounding of angles below a turn
+    assert motion["upper"] == pytest.approx(-90.0 + 10.0 * t, abs=1e-12)
+    x = t / 0.8
+    turned = 89.0 * (x - np.sin(2.0 * np.pi * x) / (2.0 * np.pi))
+    assert motion["lower"] - motion["lower"][0] == pytest.approx(turned, abs=1e-12)
+    assert np.max(arm.forces(motion=motion)["disagreement"]) < 1e-12
+
+
+def test_times_that_contradict_each_other_are_refused() -> None:
+    with pytest.raises(lw.MechanismFileError, match="has other times than the first input"):
+        lw.loads(_ARM.format(first="to = 0.4", second="to = 0.8"))
+
+
+def test_a_length_with_a_law_and_a_held_length_need_no_range() -> None:
+    text = lw.example_text("slider-input")
+    head, _, rest = text.partition("[input]")
+    tail = rest[rest.index("\n\n") :]
+    variable = next(line for line in rest.splitlines() if line.startswith("variable"))
+    moved = lw.loads(f'{head}[input]\n{variable}\nlaw = "150 - t"\nto = 1\nstep = 0.5{tail}')
+    assert len(moved.sweep()) == 3
+    held = lw.loads(f"{head}[input]\n{variable}\nfrom = 150\nto = 150{tail}")
+    assert len(held.sweep()) == 1
+
+
+def test_designs_driven_by_a_law_have_its_rates() -> None:
+    bar = _driven([lw.LawSegment(law="cycloidal", over=0.5, by=60)], step=0.05)
+    family = bar.family({"O2 A": [38.0, 40.0]}).sweep()
+    # rounding of a Newton-Raphson step
+    assert family["rocker.velocity"][1] == pytest.approx(bar.sweep()["rocker.velocity"], rel=1e-9)
+
+
 def test_constant_speed_by_a_law_gives_the_forces_of_that_speed() -> None:
     press = lw.example("crank-press")
     law = (lw.LawSegment(law="constant", over=0.5, by=360),)

@@ -158,6 +158,9 @@ def design_speeds(designs: Designs) -> Array | None:
         return None
     found = np.full(len(designs), np.nan)
     fine = np.flatnonzero(designs.problem == 0)
+    if designs.base.untimed is not None:
+        found[fine] = 1.0  # time leads
+        return found
     # all together if the formula of the speed is elementwise
     left = fine[_speeds_together(designs, fine, found)] if len(fine) else fine
     for k in left:

@@ -62,8 +62,7 @@ def position_forces_lines(found: Reactions, names: Sequence[str] = ()) -> list[s
     if vectors:
         lines += ["", *_vectors(found, vectors)]
     lines += ["", *_numbers("total", found, totals)]
-    checks = list(force_fields(found))
-    return [*lines, "", *fields(checks)] if checks else lines  # a structure has no efforts
+    return _with_checks(lines, found)
 
 
 def motion_forces_lines(
@@ -78,7 +77,13 @@ def motion_forces_lines(
     lines += fields([*force_status_fields(found), *ends])
     listed = finite_forces(found, names)
     lines += ["", *range_lines(motion, listed, found.at_switches)] if listed else []
-    return [*lines, "", *fields(list(force_fields(found, stalls)))]
+    return _with_checks(lines, found, stalls)
+
+
+def _with_checks(lines: list[str], found: Reactions, stalls: Sequence[Stall] = ()) -> list[str]:
+    """Without a motor or a position there is nothing to compare."""
+    checks = list(force_fields(found, stalls))
+    return [*lines, "", *fields(checks)] if checks else lines
 
 
 def reactions_data(found: Reactions, table: Table, stalls: Sequence[Stall] = ()) -> dict[str, Any]:

@@ -163,7 +163,7 @@ def fields(
 ) -> list[str]:
     """Labels with their texts in a column, wrapped; an empty label continues the one above."""
     entries = list(pairs)
-    width = max(len(label) for label, _ in entries)
+    width = max((len(label) for label, _ in entries), default=0)
     lines: list[str] = []
     for label, text in entries:
         first, *rest = wrapped(text, f"  {label:<{width}}  ")

@@ -20,8 +20,10 @@ def table_lines(columns: Sequence[Column], width: int = WIDTH) -> list[str]:
     """The lines of a table, header first.
 
     Columns that do not fit the width follow below, after the first column repeated. If even
-    two columns are too wide, the cells of the first column are shortened.
+    two columns are too wide, the cells of the first column are shortened. No columns, no lines.
     """
+    if not columns:
+        return []
     first, *others = columns
     lines: list[str] = []
     while True:

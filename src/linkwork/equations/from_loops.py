@@ -205,15 +205,15 @@ def _check_ranges(
 ) -> None:
     """Report inputs without a range unless they are angles."""
     for k, which in enumerate(mechanism.inputs):
-        if kinds[canonical(which.drives[1])] == "angle":
+        if kinds[canonical(which.drives[1])] == "angle" or which.law is not None:
             continue
-        for field, number in (("from", which.start), ("to", which.stop), ("step", which.step)):
-            if number is None:
-                problems.add(
-                    (*mechanism.input_key(k), field),
-                    f'is missing: "{which.drives[1]}" is not an angle and has no natural range',
-                )
-                break
+        fields = (("from", which.start), ("to", which.stop), ("step", which.step))
+        missing = [field for field, number in fields if number is None]
+        if missing and (missing != ["step"] or len(mechanism.rows(which)) > 1):
+            problems.add(
+                (*mechanism.input_key(k), missing[0]),
+                f'is missing: "{which.drives[1]}" is not an angle and has no natural range',
+            )
 
 
 def _symbols(mechanism: Loops | PlainEquations, loops: list[LoopEquation]) -> dict[str, float]:

@@ -264,7 +264,10 @@ class _Law:
     def _knots(self, formula: str, times: Array) -> tuple[Array, tuple[Array, ...]]:
         low, high = float(times.min()), float(times.max())
         own = times if len(times) <= _MOST_KNOTS else np.zeros(0)
-        knots = np.unique(np.concatenate([own, np.linspace(low, high, _GRID + 1)]))
+        grid = np.linspace(low, high, _GRID + 1)
+        # a knot that differs from a row's time by rounding would make a corner between them
+        apart = np.abs(grid[:, None] - own).min(axis=1, initial=np.inf) > _FINEST * (high - low)
+        knots = np.unique(np.concatenate([own, grid[apart]]))
         if low == high:
             knots = np.array([low, low + 1.0])
         jets = self._values(formula, knots)

@@ -21,6 +21,7 @@ from linkwork.foundation.names import pretty
 __all__ = ["EquationSheet"]
 
 Matrix = list[list[str]]
+_NONE = "none: all positions follow from the inputs"
 T = TypeVar("T")
 
 
@@ -192,7 +193,7 @@ class EquationSheet:
 
     def _text_lines(self, width: int) -> Iterator[str]:
         notation, equations = PlainText(), self.equations
-        described = ", ".join(map(self._described, equations.unknowns))
+        described = ", ".join(map(self._described, equations.unknowns)) or _NONE
         yield from _wrap("unknowns  ", described, width)
         if equations.inputs:
             yield from _wrap("inputs    ", ", ".join(map(self._described, equations.inputs)), width)
@@ -216,6 +217,8 @@ class EquationSheet:
                 head = f"  F{k + 1} = "
                 yield from _wrap(head, row_text, width, "       ")
         columns = [notation.name(u.shown) for u in equations.unknowns]
+        if not columns:
+            return
         if equations.loops:
             count = len(equations.loops)
             labels = [f"loop {k + 1}" for k in range(count)] + [
@@ -237,6 +240,8 @@ class EquationSheet:
     def latex(self) -> str:
         """The loop equations and both Jacobians as LaTeX displays."""
         notation, equations = Latex(), self.equations
+        if not equations.unknowns:
+            return f"% unknowns  {_NONE}\n"
         parts = []
         displays = [self.loop(loop, notation).replace(" = ", " &= ", 1) for loop in equations.loops]
         offset = 2 * len(equations.loops)

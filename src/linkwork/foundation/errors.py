@@ -20,6 +20,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass, replace
 from difflib import get_close_matches
+from itertools import islice
 
 from linkwork.foundation.internal import internal
 
@@ -37,6 +38,8 @@ __all__ = [
     "choices",
     "key_text",
 ]
+
+_MOST_COMPARED = 100  # known names with a wrong one
 
 
 class LinkworkError(Exception):
@@ -272,7 +275,15 @@ def choices(kind: str, names: Iterable[str], wanted: object = "") -> str:
     if not known:
         return f"(there are no {kind})"
     # the nearest names first: lists are cut after eight
-    near = get_close_matches(wanted, known, n=3) if wanted and isinstance(wanted, str) else []
+    near = _nearest(wanted, known) if wanted and isinstance(wanted, str) else []
     ordered = near + [name for name in known if name not in near]
     shown = ", ".join(ordered[:8]) + (f", … {len(ordered) - 8} more" if len(ordered) > 8 else "")
     return f"({kind}: {shown})"
+
+
+def _nearest(wanted: str, known: list[str]) -> list[str]:
+    # to compare every wrong name with every known one would take minutes for thousands of each
+    if len(known) > _MOST_COMPARED:
+        alike = (name for name in known if name[:2] == wanted[:2])
+        known = list(islice(alike, _MOST_COMPARED))
+    return get_close_matches(wanted, known, n=3)

@@ -29,6 +29,7 @@ __all__ = ["Description", "Key", "Problems", "declared"]
 
 Key = tuple[str | int, ...]
 
+_RANGE = ("start", "stop", "step")
 _MOST_ROWS = 10_000_000
 _LAW_STEPS = 360  # rows of a table over time, unless its step is given
 
@@ -189,10 +190,8 @@ class Description:
 
     @cached_property
     def times(self) -> Array:
-        """The table's times of a mechanism that time drives [s], (rows,)."""
-        ranged = [w for w in self.inputs if w.law is not None]
-        given = [w for w in ranged if (w.start, w.stop, w.step) != (None, None, None)]
-        return self.rows((given or ranged)[0])
+        """The one table of times of all inputs with a law [s], (rows,)."""
+        return self.rows(next(which for which in self.inputs if which.law is not None))
 
     def lasts(self) -> float:
         """How long the shortest law of segments takes [s]; infinite for formulas."""
@@ -204,7 +203,8 @@ class Description:
         )
 
     def rows(self, which: Input) -> Array:
-        """The table's values of one input, in the file's unit, shape (rows,); times with a law.
+        """The table's values of one input, in the file's unit, shape (rows,); the times that all
+        inputs share with a law.
 
         An input with a range of one value is constant and has one row, unlike the others.
         """
@@ -219,16 +219,22 @@ class Description:
         whole = (0.0, turn, turn / 360.0)
         if which.law is not None:
             whole = (0.0, self.lasts(), self.lasts() / _LAW_STEPS)
-        given = (which.start, which.stop, which.step)
+        given = [self._given(which, field) for field in _RANGE]
         start, stop, step = (
-            default if number is None else self.numbers(number)
+            default if number is None else number
             for number, default in zip(given, whole, strict=True)
         )
-        if which.law is not None and which.step is None and math.isfinite(stop - start):
+        if which.law is not None and given[2] is None and math.isfinite(stop - start):
             step = (stop - start) / _LAW_STEPS
-        elif which.step is None and stop < start:
+        elif given[2] is None and stop < start:
             step = -step
         return start, stop, step
+
+    def _given(self, which: Input, field: str) -> float | None:
+        """An end or the step of an input's table; of times it may be written at any input."""
+        sharing = [w for w in self.inputs if w.law is not None and which.law is not None]
+        numbers = (getattr(w, field) for w in (which, *sharing))
+        return next((self.numbers(number) for number in numbers if number is not None), None)
 
     def falls(self, which: Input) -> bool:
         """Whether the input decreases, according to its speed or else its table."""
@@ -244,18 +250,17 @@ class Description:
             )
         if problems:
             return
-        ranges = {}
+        timed = [which for which in self.inputs if which.law is not None]
+        given = [w for w in timed if (w.start, w.stop, w.step) != (None, None, None)] or timed
         for k, which in enumerate(self.inputs):
             key = self.input_key(k)
             if which.law is None and len(self.rows(which)) > 1:
                 message = "is missing: time drives the other inputs; without a law it is constant"
                 problems.add((*key, "law"), message)
-            given = (which.start, which.stop, which.step)
-            if which.law is not None and given != (None, None, None):
-                ranges[key] = self._range(which)
-        for key, own in ranges.items():
-            if own != next(iter(ranges.values())):
+            if which.law is not None and self._range(which) != self._range(timed[0]):
                 problems.add(key, "has other times than the first input: they share one table")
+            if which is given[0]:
+                _check_steps(self, which, key, problems)
         ends = (float(self.times.min()), float(self.times.max())) if not problems else (0.0, 0.0)
         segments = any(isinstance(which.law, tuple) for which in self.inputs)
         if segments and ends[0] < 0.0:
@@ -304,20 +309,15 @@ def _check_law(description: Description, which: Input, key: Key, problems: Probl
             problems.add((*key, "law"), mistake)
         if which.begin is not None:
             problems.add((*key, "begin"), "is used with segments only: the formula has a value")
-        if which.stop is None:
+        timed = [w for w in description.inputs if w.law is not None]
+        if all(w.stop is None and isinstance(w.law, str) for w in timed):
             problems.add((*key, "to"), "is missing: the last time [s], as a formula has no end")
     else:
         for below, message in law_mistakes(which.law or (), numbers):
             problems.add((*key, "law", *below), message)
     fields = {"from": which.start, "to": which.stop, "step": which.step, "begin": which.begin}
-    amounts = [
-        numbers.check_number(problems.add, (*key, field), number)
-        for field, number in fields.items()
-        if number is not None
-    ]
-    if any(problem.key[: len(key)] == key for problem in problems) or any(map(math.isnan, amounts)):
-        return
-    _check_steps(description, which, key, problems)
+    for field, number in fields.items():
+        numbers.check_number(problems.add, (*key, field), 0 if number is None else number)
 
 
 def declared(table: str, names: Iterable[str]) -> Iterator[tuple[Key, str]]:

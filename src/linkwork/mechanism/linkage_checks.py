@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections import Counter
 from itertools import combinations
 
 from linkwork.foundation.errors import choices
@@ -17,6 +17,8 @@ from linkwork.mechanism.part.slider import Slider
 
 __all__ = ["check_linkage"]
 
+#: Key, name and points of a link or cylinder.
+_Body = tuple[Key, str, tuple[str, ...]]
 _SMALLEST = 1e-100  # keeps squares and quotients of lengths finite
 
 
@@ -55,7 +57,11 @@ def _no_link(linkage: JoinedBodies, link: str) -> str:
 
 def _check_points(linkage: JoinedBodies, problems: Problems) -> None:
     carried = {point for points in linkage.links.values() for point in points}
-    carried |= {point for part in linkage.parts for point in part.body}
+    # a cylinder's end that nothing else holds would swing freely
+    ends = Counter(point for part in linkage.parts for point in part.body)
+    # slots and curves do
+    ends.update(getattr(part, "point", "") for part in linkage.parts if part.kind is not None)
+    carried |= {point for point, count in ends.items() if count > 1}
     if not linkage.points:
         problems.add(("points",), "is empty: name at least the pins of the mechanism")
     for point, coordinates in linkage.points.items():
@@ -92,34 +98,38 @@ def _check_links(linkage: JoinedBodies, problems: Problems) -> None:
 
 
 def _check_shared_points(linkage: JoinedBodies, problems: Problems) -> None:
-    """Two links that share two points are one rigid body."""
-    bodies: list[tuple[Key, str, tuple[str, ...]]] = [
+    """Links that share two points are one rigid body; one problem for all that share the same."""
+    bodies: list[_Body] = [
         *((("links", link), link, points) for link, points in linkage.links.items()),
         *((key, part.label, part.body) for key, part in linkage.keyed_parts if part.body),
     ]
-    carriers: dict[str, list[int]] = {}
-    for k, (_, _, points) in enumerate(bodies):
-        for point in sorted(set(points)):
-            carriers.setdefault(point, []).append(k)
-    shared: dict[tuple[int, int], list[str]] = {}
-    for point in sorted(carriers):
-        for pair in combinations(carriers[point], 2):
-            shared.setdefault(pair, []).append(point)
-    for (first, second), common in sorted(shared.items(), key=lambda item: item[0][::-1]):
-        if len(common) < 2:
-            continue
-        key, _, points = bodies[second]
-        other = bodies[first][1]
-        advice = (
-            "a cylinder between them cannot change its length"
-            if key[0] != "links"
-            else f"they move as one body: make one link of {_union(linkage, other, points)}"
-        )
-        problems.add(key, f'shares {common[0]} and {common[1]} with "{other}": {advice}')
+    carried = Counter(point for _, _, points in bodies for point in set(points))
+    shared: dict[tuple[str, str], list[_Body]] = {}
+    for body in bodies:
+        joints = sorted(point for point in set(body[2]) if carried[point] > 1)
+        for pair in combinations(joints, 2):
+            shared.setdefault(pair, []).append(body)
+    # bodies that share more than two points are met again with every pair
+    once: dict[tuple[Key, ...], tuple[tuple[str, str], list[_Body]]] = {}
+    for pair, own in shared.items():
+        if len(own) > 1:
+            once.setdefault(tuple(key for key, _, _ in own), (pair, own))
+    for pair, own in once.values():
+        links = [body for body in own if body[0][0] == "links"]
+        struts = [*links[:1], *own[len(links) :]]
+        if len(links) > 1:
+            union = ", ".join(dict.fromkeys(point for _, _, points in links for point in points))
+            _add_shared(problems, pair, links, f"they move as one body: make one link of {union}")
+        if len(struts) > 1:
+            _add_shared(problems, pair, struts, "a cylinder between them cannot change its length")
 
 
-def _union(linkage: JoinedBodies, other: str, points: Iterable[str]) -> str:
-    return ", ".join(dict.fromkeys([*linkage.links.get(other, ()), *points]))
+def _add_shared(
+    problems: Problems, pair: tuple[str, str], bodies: list[_Body], advice: str
+) -> None:
+    more = f" and {len(bodies) - 2} more" if len(bodies) > 2 else ""
+    key, other = bodies[1][0], bodies[0][1]
+    problems.add(key, f'shares {pair[0]} and {pair[1]} with "{other}"{more}: {advice}')
 
 
 def _check_guided_once(linkage: JoinedBodies, problems: Problems) -> None:

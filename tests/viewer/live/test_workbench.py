@@ -867,3 +867,17 @@ def test_a_point_without_a_value_is_refused_and_one_in_a_file_is_shown(bench: Wo
     assert isinstance(state, tell.FileState)
     assert '"O2" is not defined' in state.lacks[0].message
     assert "P.y" not in {number.name for number in state.numbers}
+
+
+def test_inputs_with_laws_are_shown_as_one_table_of_times(tmp_path: Path) -> None:
+    text = lw.example_text("double-pendulum")
+    head = text[: text.index("[[input]]")]
+    laws = "".join(
+        f'[[input]]\nlink = "{link}"\nlaw = "10*t"\n{times}\n'
+        for link, times in (("upper", "to = 1"), ("lower", "step = 0.25"))
+    )
+    path = tmp_path / "arm.toml"
+    path.write_text(head + laws, encoding="utf-8")
+    opened = Workbench(MechanismFile(path), lw.loads).opened()
+    (shown,) = only(opened, tell.FileState).inputs
+    assert (shown.name, shown.start, shown.stop, shown.rows) == ("t", 0.0, 1.0, 5)

@@ -13,6 +13,7 @@ from linkwork.drawing.charts.labels import rate_label, size_label
 from linkwork.foundation.arrays import Array
 from linkwork.foundation.errors import InputError
 from linkwork.foundation.names import find_spelling
+from linkwork.results.listing.motion_listing import coordinates_off_ground
 from linkwork.results.motion import Motion
 from linkwork.results.quantities.asked import Asked, Group
 from linkwork.results.quantity import Kind, Rate
@@ -82,7 +83,8 @@ def lead_of(motion: Motion) -> str:
 
 
 def usual_columns(motion: Motion) -> tuple[str, ...]:
-    """The unknowns; without unknowns the outputs, or else the coordinates of the traced points.
+    """The unknowns; without unknowns the outputs, or else the coordinates of the traced points, or
+    of all moving ones.
 
     Raises
     ------
@@ -91,6 +93,7 @@ def usual_columns(motion: Motion) -> tuple[str, ...]:
     """
     traced = [f"{point}.{axis}" for point in motion.skeleton.traced for axis in "xy"]
     found = tuple(motion.unknowns) or tuple(motion.outputs) or tuple(traced)
+    found = found or coordinates_off_ground(motion)
     if not found:
         raise InputError(f'"{motion.mechanism}" has no unknowns: name the columns to plot')
     return found

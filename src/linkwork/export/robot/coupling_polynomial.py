@@ -107,7 +107,8 @@ def _fit(x: Array, y: Array, slope: Array, condition: float, every: Array) -> Jo
             break
     assert best is not None
     line = Chebyshev.fit(x, y, 1)
-    offset, factor = line.convert(kind=np.polynomial.Polynomial).coef.tolist()
+    # of a joint at rest the factor is left out
+    offset, factor, *_ = (*line.convert(kind=np.polynomial.Polynomial).coef.tolist(), 0.0)
     return JointPolynomial(
         series=best[1],
         error=best[0],

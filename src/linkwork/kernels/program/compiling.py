@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import hashlib
 from collections.abc import Callable, Sequence
 from functools import partial
+from pathlib import Path
 from typing import TYPE_CHECKING, Any, NoReturn, ParamSpec, Protocol, TypeVar, cast
 
 from linkwork.foundation.errors import MissingPackageError
@@ -15,7 +17,7 @@ except ModuleNotFoundError:
 from llvmlite import binding, ir
 from numba import types  # noqa: TID253
 from numba.core import cgutils  # noqa: TID253
-from numba.core.caching import FunctionCache  # noqa: TID253
+from numba.core.caching import FunctionCache, IndexDataCacheFile  # noqa: TID253
 from numba.core.ccallback import CFunc  # noqa: TID253
 from numba.extending import intrinsic  # noqa: TID253
 
@@ -30,6 +32,7 @@ if TYPE_CHECKING:
     Emitter = Callable[[BaseContext, ir.IRBuilder, Signature, Sequence[ir.Value]], ir.Value]
 
 __all__ = [
+    "CodeFiles",
     "call_at",
     "called_by_name",
     "called_unfused",
@@ -70,6 +73,27 @@ class Compiling(Protocol):
     def __call__(self, function: Callable[_P, _R_co], /) -> Compiled[_P, _R_co]: ...
 
 
+class CodeFiles(IndexDataCacheFile):
+    """The files of a function's compiled code; a file's name depends on what it holds.
+
+    Numba counts the files, and enters a file before it is written: of processes that compile at
+    once one could read the code of another signature, or of former sources.
+    """
+
+    def save(self, key: object, data: object) -> None:
+        """Write the code, then enter it."""
+        file: Any = self  # whose methods have no types
+        index = Path(file._index_path)
+        known: dict[object, str] = file._load_index()
+        if not known and index.exists():  # the sources have changed
+            for stale in index.parent.glob(f"{index.stem}.*.nbc"):
+                stale.unlink(missing_ok=True)
+        digest = hashlib.sha256(file._dump((file._source_stamp, key))).hexdigest()[:16]
+        name = known.get(key) or f"{index.stem}.{digest}.nbc"
+        file._save_data(name, data)
+        file._save_index({**file._load_index(), key: name})
+
+
 class _SourcesCache(FunctionCache):
     """A function's compiled code on disk, valid as long as no source of the kernels changes.
 
@@ -79,8 +103,12 @@ class _SourcesCache(FunctionCache):
 
     def __init__(self, function: Callable[..., object]) -> None:
         super().__init__(function)  # type: ignore[no-untyped-call]
-        file = self._cache_file
-        file._source_stamp = (file._source_stamp, sources_digest())
+        files: Any = CodeFiles
+        self._cache_file = files(  # noqa: V101  # Numba reads it
+            cache_path=self._cache_path,
+            filename_base=self._impl.filename_base,
+            source_stamp=(self._impl.locator.get_source_stamp(), sources_digest()),
+        )
 
 
 def _enter_nothing(*_: object) -> None:

@@ -26,6 +26,7 @@ from linkwork.results.quantities.asked import Asked
 from linkwork.results.quantity import Kind
 
 __all__ = [
+    "coordinates_off_ground",
     "evidence_fields",
     "how_many",
     "limit_fields",
@@ -159,12 +160,14 @@ def range_columns(
     decimals: int = 6,
     between: Mapping[str, Array] = FrozenDict(),
 ) -> list[Column]:
-    """Smallest and largest value of every unknown, output and traced point, and where.
+    """Smallest and largest value of every unknown, output and traced point, and where; of all
+    moving points where there is none of these.
 
     ``between``: further values of inputs and columns, in the same order.
     """
     traced = (f"{point}.{axis}" for point in motion.skeleton.traced for axis in "xy")
-    names = columns or [*motion.unknowns, *motion.riding, *motion.outputs, *traced]
+    usual = [*motion.unknowns, *motion.riding, *motion.outputs, *traced]
+    names = columns or usual or coordinates_off_ground(motion)
     none = np.zeros(0)
     found = [
         _Range(motion.quantity(name), np.append(motion[name], between.get(name, none)))
@@ -205,6 +208,12 @@ def whole_energy(motion: Motion) -> Array:
     """The kinetic and stored energy of a loaded mechanism, flywheels included, (N,)."""
     found: Array = motion["kinetic_energy"] + motion["stored_energy"]
     return found if motion.flywheel_energy is None else found + motion.flywheel_energy
+
+
+def coordinates_off_ground(motion: Motion) -> tuple[str, ...]:
+    """What there is to show of a motion without unknowns, outputs and traced points."""
+    moving = [point for point in motion.points if point not in motion.skeleton.fixed]
+    return tuple(f"{point}.{axis}" for point in moving for axis in "xy")
 
 
 def _kind(asked: Asked) -> Kind:

@@ -247,7 +247,10 @@ def _unknowns_of(sheet: EquationSheet, description: Description) -> tuple[tell.U
 def _driven_inputs(sheet: EquationSheet, description: Description) -> tuple[tell.DrivenInput, ...]:
     """The driven quantities and their ranges."""
     found = []
-    for which, variable in zip(description.inputs, sheet.equations.inputs, strict=True):
+    timed = [which for which in description.inputs if which.law is not None]
+    # laws of several inputs share the time
+    inputs = timed[:1] or description.inputs
+    for which, variable in zip(inputs, sheet.equations.inputs, strict=True):
         rows = description.rows(which)
         found.append(
             tell.DrivenInput(
