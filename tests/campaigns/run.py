@@ -42,6 +42,7 @@ from tests.campaigns.processors import processor_campaign
 from tests.campaigns.roots import root_campaign
 from tests.campaigns.steps import judge_steps
 from tests.campaigns.study import study_campaign
+from tests.campaigns.switching_motions import switching_campaign
 from tests.campaigns.whole_motions import EVERY as MOTIONS, whole_motion_campaign
 from tests.campaigns.workbooks import workbook_campaign
 
@@ -150,6 +151,10 @@ def _defects(part: int) -> tuple[Counter[str], list[str]]:
     return defect_campaign(part, _PART)
 
 
+def _switching(part: int) -> tuple[Counter[str], list[str]]:
+    return switching_campaign(part, _PART)
+
+
 def _gradients(part: int) -> tuple[Counter[str], list[str]]:
     return gradient_campaign(int(_GRADIENTS[part % EVERY]))
 
@@ -170,6 +175,7 @@ CAMPAIGNS: dict[str, tuple[Callable[[int], tuple[Counter[str], list[str]]], int]
     "links": (_links, 100_000),
     "imports": (_imports, 80_000),
     "forces": (_forces, 2_000),
+    "switching-motions": (_switching, 2_000),
     "precision-points": (_precision_points, 200),
     "nine-points": (nine_point_campaign, 100),
     "poses": (_poses, 100_000),

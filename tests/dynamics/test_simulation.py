@@ -130,8 +130,8 @@ def test_a_thousand_turns_are_the_same_whichever_link_leads() -> None:
         found[lead] = motion["crank"]
     assert found["crank"][-1] > 1000 * 360
     for lead in ("coupler", "rocker"):
-        # the period to 1e-12: angles in degrees that have grown to 360,000
-        assert np.abs(found[lead] - found["crank"]).max() < 1e-12 * found["crank"][-1]
+        # some twenty steps of a lap, each to 1e-13 of the speed, add in its period
+        assert np.abs(found[lead] - found["crank"]).max() < 1e-11 * found["crank"][-1]
 
 
 def test_a_damped_mass_on_a_spring_moves_by_its_closed_form() -> None:

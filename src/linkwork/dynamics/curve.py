@@ -70,7 +70,7 @@ def curve_of(model: Model, start: Array, policy: ChangePointPolicy, certify: boo
     if not model.equations.unknowns:
         return _without_unknowns(model, drive, start)
     if policy is ChangePointPolicy.STRAIGHT and drive.free:
-        turn = turn_of(drive.solver, start)
+        turn = turn_of(drive.leads, drive.solver, start)
         if turn is not None:
             leg = Leg(lead=len(start) - 1, begin=turn.begin, end=turn.end, rows=turn.rows)
             return PositionCurve(

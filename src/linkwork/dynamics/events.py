@@ -15,7 +15,7 @@ from linkwork.foundation.arrays import Array
 from linkwork.foundation.rounding import EPSILON
 from linkwork.results.quantities.asked import Asked
 
-__all__ = ["Bound", "Event", "first_event", "just_behind", "margins_on"]
+__all__ = ["BEHIND", "Bound", "Event", "first_event", "just_behind", "margins_on"]
 
 _RESTS = 1e-8  # of the whole time: a shorter bounce is rest
 _LOW = 1e-12  # of the leg: so is a lower one, whose margin is rounding
@@ -23,7 +23,7 @@ _NEXT = 1e-6  # of the leg: places on both sides of one, for slopes
 _TOUCHES = 1e-9  # of the leg: a stop so near is touched
 _LOOKS = 24  # places of a step at which signs are compared
 _ROUNDS = 60  # halvings are the worst case
-_BEHIND = 8.0  # roundoffs of a state that is computed again
+BEHIND = 8.0  # roundoffs of a state that is computed again
 _NEAR = 1e-4  # of a bracket: around the straight line's zero, where the next one is looked for
 
 _T = TypeVar("_T", float, Array)
@@ -44,6 +44,12 @@ class Bound:
         solved = leg.state(s, speed, t, gain).moving.solved
         found: Array = self.side * (np.atleast_1d(self.asked.values(solved, 1.0)) - self.value)
         return found
+
+    def slope(self, leg: ReducedLeg, s: float, t: float, gain: Array) -> float:
+        """The derivative of the margin by the leader, in radians or lengths."""
+        here, one, now = np.array([s]), np.ones(1), np.array([t])
+        jet = self.asked.jet(leg.state(here, one, now, gain).displaced.solved)
+        return self.side * float(np.atleast_1d(jet.d1)[0])
 
     def _near(self, leg: ReducedLeg, s: float, t: float, gain: Array) -> tuple[float, float]:
         """The margin at a place at rest, and its slope by the length of the leg."""
@@ -79,7 +85,7 @@ class Bound:
 
         A much longer step would look at the margin after the next shock only.
         """
-        found = 2.0 * abs(speed) / abs(pull) if pull else math.inf
+        found = 2.0 * abs(speed) / abs(pull) if pull * speed < 0.0 else math.inf
         low = abs(speed) * found < _LOW * float(np.ptp(leg.table.edges))
         return 0.0 if speed == 0.0 or low or found < _RESTS * until else found
 
@@ -133,7 +139,7 @@ def margins_on(
         if rubbing is not None:
             found += [rubbing.direction * speed]
             found += [*leg.friction_margins(s, speed, t, gain, rubbing).T]
-        if leg.reduction.comparisons:
+        if leg.reduction.switch_count:
             found += [*leg.margins(s, speed, t, gain).T]
         return np.stack(found, axis=1)
 
@@ -172,7 +178,7 @@ def just_behind(place: _T, speed: _T, acceleration: _T, size: _T) -> tuple[_T, _
     Rounding depends on how many states are computed together, and positions are solved again for
     their rows: all must find this state behind the switch. ``acceleration``: that in front of it.
     """
-    further = _BEHIND * EPSILON
+    further = BEHIND * EPSILON
     place = place + further * size * np.sign(speed)
     return place, speed + further * np.abs(speed) * np.sign(acceleration)
 

@@ -12,17 +12,19 @@ import numpy as np
 from linkwork.dynamics.driven_inputs import DrivenInputs
 from linkwork.dynamics.reduction import Reduction
 from linkwork.forces.applied import AppliedLoads
+from linkwork.forces.geometry import Geometry
 from linkwork.forces.virtual_work import efforts
-from linkwork.foundation.arrays import Array, BoolArray
+from linkwork.foundation.arrays import Array, BoolArray, ComplexArray
 from linkwork.foundation.certification import Certification
 from linkwork.foundation.stacked_systems import solutions
 from linkwork.foundation.status import CONVERGED
-from linkwork.foundation.units import force_of_inertia
 from linkwork.numerics.proof.position_proof import prove
 from linkwork.numerics.rows import SolvedRows
 
 __all__ = ["InputDynamics"]
 
+_IN_LINE = 1e-12  # of the longest link: how far a spring in line may be off it
+_SHORT = 1e-6  # of the longest link: a shorter spring has no direction
 _FAR = 0.3  # weighted: a position that Newton-Raphson finds farther from its tangent is another
 
 
@@ -47,17 +49,8 @@ class InputDynamics:
         self.size = np.array([1.0 if kind == "angle" else length for kind in kinds])
         self.inputs = DrivenInputs.of(model, self.size)
         self._start = start
+        self._lines: ComplexArray = np.zeros(0, dtype=complex)
         self.restart()
-        own = reduction.description
-        unit = force_of_inertia(own.mass, own.length, own.force)
-        given = [each.inertia for each in own.inputs]
-        self._inertia = np.array([0.0 if x is None else own.numbers(x) * unit for x in given])
-        self._motors = [
-            None
-            if each.motor is None
-            else each.motor.curve("link" if kind == "angle" else "slider", own.numbers, own.length)
-            for each, kind in zip(own.inputs, kinds, strict=True)
-        ]
 
     @property
     def here(self) -> Array:
@@ -121,6 +114,16 @@ class InputDynamics:
 
     def acceleration(self, q: Array, speed: Array, t: Array) -> Array:
         """q̈ (B, f) of states (B, f) at times (B,); NaN where there is no position."""
+        _, mass, force = self.balance(q, speed, t)
+        good = np.isfinite(force).all(axis=1)
+        result = np.full_like(q, np.nan)
+        result[good] = solutions(mass[good], force[good, :, None])[:, :, 0]
+        return result
+
+    def balance(self, q: Array, speed: Array, t: Array) -> tuple[Array, Array, Array]:
+        """Positions (B, N), and the masses (B, f, f) and forces (B, f) of the free inputs in states
+        (B, f) at times (B,); forces are NaN where there is no position, or no mass.
+        """
         v, found = self.positions(q, t)
         free, driven = self.inputs.free, self.inputs.driven
         whole = self.inputs.complete(speed, t, 1)
@@ -128,7 +131,7 @@ class InputDynamics:
         reduction = self.reduction
         moving = reduction.geometry(v, rates.first, rates.second, t)
         with np.errstate(all="ignore"):
-            applied = reduction.loaded(moving)
+            applied = reduction.loaded(moving, self.spring_margins(moving))
             applied.weigh(reduction.description)
             # eq. (96): what the inputs would have to give at constant speeds
             force = -efforts(applied)[0].T + self._motor_torques(whole)
@@ -138,10 +141,41 @@ class InputDynamics:
                 given = self.inputs.complete(0.0 * q, t, 2)[:, driven]
                 force = force - np.einsum("bij,bj->bi", mass[:, free][:, :, driven], given)
             mass = mass[:, free][:, :, free]
-            good = found & np.isfinite(force).all(axis=1) & np.isfinite(mass).all(axis=(1, 2))
-            result = np.full_like(q, np.nan)
-            result[good] = solutions(mass[good], force[good, :, None])[:, :, 0]
-        return result
+        good = found & np.isfinite(mass).all(axis=(1, 2))
+        return v, mass, np.where(good[:, None], force, np.nan)
+
+    def spring_margins(self, moving: Geometry) -> Array:
+        """The lengths of springs whose tension jumps at zero length, (B, S): negative beyond it in
+        the line of :meth:`aim`, 1 where they are in no line with it.
+        """
+        spans = self._spans(moving)
+        if not len(self._lines):
+            return np.ones(spans.shape)
+        along = spans * self._lines.conj()
+        in_line = np.abs(along.imag) <= _IN_LINE * moving.length
+        return np.where(in_line, along.real, 1.0)
+
+    def _spans(self, moving: Geometry) -> ComplexArray:
+        found = np.zeros((moving.rows, len(self.reduction.springs)), dtype=complex)
+        for k, spring in enumerate(self.reduction.springs):
+            assert spring.between is not None
+            start, end = map(moving.place, spring.between)
+            found[:, k] = end.v - start.v
+        return found
+
+    def aim(self, moving: Geometry, turn: bool) -> None:
+        """Take the lines of the springs from a row; of those that are too short to have one they
+        stay, or ``turn`` if the spring is beyond zero length.
+        """
+        spans = self._spans(moving)[0]
+        sizes = np.abs(spans)
+        with np.errstate(all="ignore"):
+            lines = spans / sizes
+        short = sizes < _SHORT * moving.length
+        if len(self._lines):
+            beyond = ((spans * self._lines.conj()).real <= 0.0) & turn
+            lines = np.where(short, np.where(beyond, -self._lines, self._lines), lines)
+        self._lines = np.nan_to_num(lines)
 
     def masses(self) -> Array:
         """The matrix of masses of the free inputs at the last proved position, (f, f)."""
@@ -154,7 +188,7 @@ class InputDynamics:
     def _masses(self, applied: AppliedLoads) -> Array:
         """The matrices of masses, (B, p, p)."""
         geometry, p = applied.geometry, len(self.size)
-        total = np.zeros((geometry.rows, p, p)) + np.diag(self._inertia)
+        total = np.zeros((geometry.rows, p, p)) + np.diag(self.reduction.inertias)
         for body in applied.masses:  # eq. (95)
             moved = geometry.partial_local(body.link, body.centre)
             turned = geometry.turning(body.link)
@@ -165,11 +199,10 @@ class InputDynamics:
         return scaled
 
     def _motor_torques(self, speed: Array) -> Array:
-        scale = self.reduction.model.input_scale
         torques = np.zeros_like(speed)
-        for k, curve in enumerate(self._motors):
-            if curve is not None:
-                torques[:, k] = curve(speed[:, k] * self.size[k] / scale[k])
+        for k, motor in enumerate(self.reduction.motors):
+            if motor is not None:
+                torques[:, k] = motor.torque(speed[:, k] * self.size[k])
         return torques
 
     def rows(self, q: Array, speed: Array, bend: Array, t: Array, certify: bool) -> SolvedRows:

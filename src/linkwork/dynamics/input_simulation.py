@@ -6,10 +6,17 @@ from collections.abc import Callable, Mapping
 
 import numpy as np
 
+from linkwork.dynamics.energy import watch_energy
 from linkwork.dynamics.input_dynamics import InputDynamics
 from linkwork.dynamics.input_travel import InputTravel
 from linkwork.dynamics.reduction import Reduction
-from linkwork.dynamics.simulated import bounds_of, check_masses_move, model_name, start_speeds
+from linkwork.dynamics.simulated import (
+    bounds_of,
+    check_masses_move,
+    model_name,
+    start_speeds,
+    with_stops,
+)
 from linkwork.equations.input_motion import law_motions
 from linkwork.foundation.arrays import Array
 from linkwork.foundation.errors import InputError, KeyWords
@@ -119,4 +126,7 @@ def _motion(travel: InputTravel) -> Motion:
             for variable, value in zip(inputs, values, strict=True)
         )
         told = f"the motion ends at t = {travel.t:.10g} s, {place}: {travel.ended}"
-    return motion_of_rows(travel.dynamics.reduction.named, rows, told, np.array(added))
+    motion = motion_of_rows(travel.dynamics.reduction.named, rows, told, np.array(added))
+    pushes, impulses = (np.concatenate(parts) for parts in (travel.pushes, travel.impulses))
+    motion = with_stops(motion, travel.bounds, pushes, impulses)
+    return watch_energy(motion, travel.dynamics.reduction)

@@ -7,25 +7,23 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from linkwork.dynamics.events import Bound, Event, first_event, just_behind
+from linkwork.dynamics.events import BEHIND, Bound, Event, first_event, just_behind
 from linkwork.dynamics.input_dynamics import InputDynamics
-from linkwork.dynamics.pace import Pace
+from linkwork.dynamics.pace import Chatter, Pace
 from linkwork.dynamics.reduction import FAR, NEAR
+from linkwork.dynamics.stop_contacts import Contacts
 from linkwork.dynamics.vector_collocation import VectorStep, try_vector_step
 from linkwork.forces.applied import AppliedLoads
 from linkwork.forces.geometry import Geometry
 from linkwork.foundation.arrays import Array
-from linkwork.foundation.frozen import FrozenDict
 from linkwork.foundation.rounding import EPSILON
 from linkwork.numerics.rows import SolvedRows
+from linkwork.results.quantities.definition import Solved
 
 __all__ = ["InputTravel"]
 
 _SHORTEST = 1e-12  # of the whole time: a shorter step makes no way
 _FIRST = 1e-3  # of the whole time: the first step
-_MOST_EVENTS = 60  # switches within this part of the whole time: they chatter
-_CHATTER = 1e-7
-_DIFFERENCE = 1e-3  # of fourth order, for the normal of a stop
 _DRIVEN = 1e-9  # of the normal: less of it is rounding
 _RESTS = 1e-8  # of the whole time: a shorter bounce is rest
 _LOW = 1e-12  # of a radian, or of the longest link: so is a lower one, whose margin is rounding
@@ -38,7 +36,8 @@ class InputTravel:
     """A motion under way.
 
     ``times`` (B,): those asked for, rising. ``rows``: what is found so far, and ``added``, which
-    of them were not asked for. ``ended``: why the motion ended early, "" if it did not.
+    of them were not asked for. ``pushes`` and ``impulses``: of the stops in these rows, (B, S).
+    ``ended``: why the motion ended early, "" if it did not.
     """
 
     dynamics: InputDynamics
@@ -48,6 +47,8 @@ class InputTravel:
     certify: bool
     progress: Callable[[float], None] | None = None
     rows: list[SolvedRows] = field(default_factory=list)
+    pushes: list[Array] = field(default_factory=list)
+    impulses: list[Array] = field(default_factory=list)
     added: list[bool] = field(default_factory=list)
     ended: str = ""
     t: float = 0.0
@@ -56,13 +57,15 @@ class InputTravel:
     def __post_init__(self) -> None:
         self.until = float(self.times[-1])
         self.q = self.dynamics.here
-        self.recent: list[float] = []
+        self.chatter = Chatter(self.until)
+        self.contacts = Contacts(self.dynamics, self.bounds)
 
     def run(self) -> None:
         """Step until all times are reached or the motion ends."""
         self._switch()
-        self._record_here("")
         self._touch()
+        self._record_here("")
+        self._strike_touched()
         h = _FIRST * self.until
         pace = Pace(self.until)
         while self.t < self.until and not self.ended:
@@ -73,7 +76,7 @@ class InputTravel:
             target = min(self.until, self.dynamics.inputs.next_break(self.t))
             short = target - self.t
             step, following = try_vector_step(
-                self.dynamics.acceleration, self.t, self.q, self.speed, min(h, short, self.longest)
+                self.contacts.acceleration, self.t, self.q, self.speed, min(h, short, self.longest)
             )
             if step is None:
                 if following < _SHORTEST * self.until:
@@ -88,11 +91,14 @@ class InputTravel:
 
     def _advance(self, step: VectorStep, end: float) -> None:
         event = None
-        comparisons = len(self.dynamics.reduction.comparisons)
+        comparisons = self.dynamics.reduction.switch_count
         if comparisons or self.bounds:
+            self._aim(turn=False)
             event = first_event(step, end, self._margins, comparisons)
+        count = len(self.bounds)
         if event is not None:
-            end = event.before if event.falls else event.after
+            # stops are met just before, all others just after
+            end = event.before if event.number < count else event.after
         times = self.times[self.taken :]
         times = times[times <= end]
         if len(times) and not self._record(times, *step.at(times), "", False):
@@ -103,77 +109,104 @@ class InputTravel:
         if not self.dynamics.settle(place[0], end):
             self._end("the position there is not proved: it is too close to a singular one")
             return
-        self.t, self.q, self.speed = end, place[0], speed[0]
+        self.t = end
+        self.q, self.speed = self.contacts.close(place[0], speed[0], end)
         if event is not None:
             self._meet(event)
 
     def _meet(self, event: Event) -> None:
-        if event.falls:
+        if event.number < len(self.bounds):
             self._hit(event.number)
+            return
+        if event.falls:
+            number = event.number - len(self.bounds)
+            self.contacts.active.remove(number)
+            self._let_go([number])
+            self._record_here("start")
             return
         # the row has the loads, and so the accelerations, after the switch
         q, size = self.q, np.maximum(np.abs(self.q), 1.0)
-        before = self.dynamics.acceleration(q[None], self.speed[None], self._now)[0]
+        before = self.contacts.acceleration(q[None], self.speed[None], self._now)[0]
         self.q, self.speed = just_behind(q, self.speed, before, size)
         self._switch()
         self._record_here("switch")
-        limit = self.t - _CHATTER * self.until
-        self.recent = [*(t for t in self.recent if t > limit), self.t]
-        if len(self.recent) > _MOST_EVENTS:
+        if self.chatter.starts(self.t):
             self._end("a comparison in a load switches without end there")
+        self._let_go(self.contacts.release(self.q, self.speed, self.t))
         for number in range(len(self.bounds)):
-            way = self._normal(number) @ self._whole(self.speed, 1)
-            if self._margin(number) <= 0.0 and way < 0.0:
+            if number not in self.contacts.active and self._margin(number) <= 0.0:
                 self._hit(number)
 
     def _hit(self, number: int) -> None:
         """A shock at a stop: an impulse along its normal."""
         bound, inputs = self.bounds[number], self.dynamics.inputs
         name = f"stop of {bound.asked.name}"
-        self._record_here(name)
         normal = self._normal(number)
+        closing = float(normal @ self._whole(self.speed, 1))
+        if closing >= 0.0:
+            return
         free = normal[inputs.free]
         if np.abs(free).max() <= _DRIVEN * np.abs(normal).max():
+            self._record_here(name)
             self._end(f"a law drives the mechanism into the {name}")
             return
-        push = np.linalg.solve(self.dynamics.masses(), free)
-        closing = float(normal @ self._whole(self.speed, 1))
-        # eq. (172)
-        self.speed = self.speed - (1.0 + bound.restitution) * closing / float(free @ push) * push
-        leaving, pull = -bound.restitution * closing, self._pull(number, normal)
+        before, state = self.speed, (self.q, self.t)
+        self.speed, impulses = self.contacts.strike(number, before, self.t, bound.restitution)
+        pull = self.contacts.pull(number, self.q, self.speed, self.t)
+        leaving = -bound.restitution * closing
         flight = 2.0 * leaving / -pull if pull < 0.0 else np.inf if leaving or pull else 0.0
         low = leaving * flight < _LOW * np.abs(normal).max()
-        if pull <= 0.0 and (low or flight <= _RESTS * self.until):
-            self._end(f"it stays at the {name}, and contacts of several inputs are not computed")
+        rests = pull <= 0.0 and (low or flight <= _RESTS * self.until)
+        if rests:
+            self.speed, impulses = self.contacts.strike(number, before, self.t, 0.0)
+        self._record_struck(name, before, impulses)
         # a much longer step would look at the margin after the next shock only
         self.longest = 2.0 * flight if flight > 0.0 else np.inf
+        if rests:
+            self.contacts.active.append(number)
+            self.q, self.speed = self.contacts.close(*state[:1], self.speed, self.t)
+            self._let_go(self.contacts.release(self.q, self.speed, self.t))
         self._switch()
 
     longest: float = np.inf
 
-    def _pull(self, number: int, normal: Array) -> float:
-        """The second derivative of the margin of a stop by time."""
-        bend = self.dynamics.acceleration(self.q[None], self.speed[None], self._now)[0]
-        return float(normal @ self._whole(bend, 2)) + self._curving(number)
+    def _let_go(self, numbers: Sequence[int]) -> None:
+        """Go behind what rounding could take for stops that the motion leaves."""
+        for number in numbers:
+            normal, bound = self._normal(number), self.bounds[number]
+            free = normal[self.dynamics.inputs.free]
+            scale = bound.asked.names.units.scale(bound.asked.own.kind)
+            size = scale * abs(bound.value) + np.abs(normal) @ (
+                1.0 + np.abs(self._whole(self.q, 0))
+            )
+            self.q = self.q + BEHIND * EPSILON * size * free / float(free @ free)
 
     def _touch(self) -> None:
-        """Hit a stop that is touched at the start, or end if the motion stays at it."""
+        """Close the stops that are touched at the start and pushed against."""
         for number, bound in enumerate(self.bounds):
             normal = self._normal(number)
-            if self.ended or self._margin(number) > _rounding(bound, normal):
+            if self._margin(number) > _rounding(bound, normal):
                 continue
             closing = float(normal @ self._whole(self.speed, 1))
-            if closing < 0.0:
+            pull = self.contacts.pull(number, self.q, self.speed, self.t)
+            if closing == 0.0 and pull < 0.0:
+                self.contacts.active.append(number)
+        self.contacts.release(self.q, self.speed, self.t)
+
+    def _strike_touched(self) -> None:
+        """Hit the stops that are touched at the start."""
+        for number, bound in enumerate(self.bounds):
+            if self._margin(number) <= _rounding(bound, self._normal(number)) and not self.ended:
                 self._hit(number)
-            elif closing == 0.0 and self._pull(number, normal) < 0.0:
-                name = f"stop of {bound.asked.name}"
-                self._end(
-                    f"it stays at the {name}, and contacts of several inputs are not computed"
-                )
 
     def _margin(self, number: int) -> float:
         """The margin of a stop now."""
-        return float(self._stop_margins(number, self._whole(self.q, 0)[None])[0])
+        solved = self._geometry(self.q[None], self.speed[None], self._now).solved
+        return float(self._stop_margin(self.bounds[number], solved)[0])
+
+    def _stop_margin(self, bound: Bound, solved: Solved) -> Array:
+        found: Array = bound.side * (np.atleast_1d(bound.asked.values(solved, 1.0)) - bound.value)
+        return found
 
     def _whole(self, free: Array, order: int) -> Array:
         """All inputs now, or their derivatives, from those of the free ones, (p,)."""
@@ -182,40 +215,32 @@ class InputTravel:
 
     def _normal(self, number: int) -> Array:
         """The derivatives of the margin of a stop by all inputs, (p,)."""
-        here = self._whole(self.q, 0)
-        steps = _DIFFERENCE * np.array([1.0, -1.0, 2.0, -2.0])
-        around = np.stack([here + step * unit for step in steps for unit in np.eye(len(here))])
-        up, down, far_up, far_down = self._stop_margins(number, around).reshape(4, len(here))
-        found: Array = (8.0 * (up - down) - (far_up - far_down)) / (12.0 * _DIFFERENCE)
-        return found
-
-    def _curving(self, number: int) -> float:
-        """The second derivative of the margin of a stop by time, at constant speeds."""
-        speed = self._whole(self.speed, 1)
-        size = float(np.abs(speed).max())
-        if size == 0.0:
-            return 0.0
-        steps = _DIFFERENCE * np.array([-2.0, -1.0, 0.0, 1.0, 2.0])
-        along = self._whole(self.q, 0) + steps[:, None] * speed / size
-        found = self._stop_margins(number, along) @ np.array([-1.0, 16.0, -30.0, 16.0, -1.0])
-        return float(found) / 12.0 * (size / _DIFFERENCE) ** 2
-
-    def _stop_margins(self, number: int, inputs: Array) -> Array:
-        """The margin of a stop at all inputs (B, p), with the speeds of now, (B,)."""
-        times, bound = np.full(len(inputs), self.t), self.bounds[number]
-        speeds = np.tile(self._whole(self.speed, 1), (len(inputs), 1))
-        solved = self._geometry_of(inputs, speeds, times).solved
-        found: Array = bound.side * (bound.asked.values(solved, 1.0) - bound.value)
+        v, _ = self.dynamics.positions(self.q[None], self._now)
+        found: Array = self.contacts.normals([number], v, self._now)[0, 0]
         return found
 
     def _switch(self) -> None:
         """Let every comparison have the value that it has now."""
         reduction = self.dynamics.reduction
-        if not reduction.comparisons:
+        if not reduction.switch_count:
             return
-        reduction.switches = FrozenDict()
-        applied = self._applied(self.q[None], self.speed[None], self._now)
-        reduction.switch([float(margin[0]) for margin in reduction.margins(applied)])
+        reduction.release()
+        self._aim(turn=True)
+        margins = self._switch_margins(self.q[None], self.speed[None], self._now)
+        now = [float(margin[0]) for margin in margins]
+        # springs are measured along their lines of now, also those of no length
+        count = len(now) - len(reduction.springs)
+        reduction.switch([*now[:count], *(1.0 for _ in reduction.springs)])
+
+    def _aim(self, turn: bool) -> None:
+        if self.dynamics.reduction.springs:
+            self.dynamics.aim(self._geometry(self.q[None], self.speed[None], self._now), turn)
+
+    def _switch_margins(self, q: Array, speed: Array, t: Array) -> list[Array]:
+        applied, own = self._applied(q, speed, t), self.dynamics
+        rates = own.inputs.complete(speed, t, 1) * own.size
+        springs = own.spring_margins(applied.geometry)
+        return own.reduction.margins(applied, rates, springs)
 
     @property
     def _now(self) -> Array:
@@ -238,13 +263,22 @@ class InputTravel:
         return self.dynamics.reduction.geometry(v, first, np.full_like(v, np.nan), t)
 
     def _margins(self, q: Array, speed: Array, t: Array) -> Array:
-        """The margins of stops and of comparisons, in this order."""
-        applied = self._applied(q, speed, t)
-        solved = applied.geometry.solved
+        """The margins of stops, the pushes of those that are closed, and the margins of switches,
+        in this order.
+        """
+        active = self.contacts.active
+        solved = self._geometry(q, speed, t).solved
+        one = np.ones(len(t))
         found = [
-            bound.side * (bound.asked.values(solved, 1.0) - bound.value) for bound in self.bounds
+            one if number in active else self._stop_margin(bound, solved)
+            for number, bound in enumerate(self.bounds)
         ]
-        found += self.dynamics.reduction.margins(applied)
+        pushes = {}
+        if active:
+            pushes = dict(zip(active, self.contacts.solve(q, speed, t)[1].T, strict=True))
+        found += [pushes.get(number, one) for number in range(len(self.bounds))]
+        if self.dynamics.reduction.switch_count:
+            found += self._switch_margins(q, speed, t)
         return np.stack(found, axis=1)
 
     def check_inside(self) -> tuple[Bound, float] | None:
@@ -261,6 +295,12 @@ class InputTravel:
         """Add rows; whether all their positions were found."""
         rows = self.dynamics.rows(q, speed, bend, t, self.certify)
         count = len(rows.v)
+        pushes = np.zeros((count, len(self.bounds)))
+        if self.contacts.active:
+            found = self.contacts.solve(q[:count], speed[:count], t[:count])[1]
+            pushes[:, self.contacts.active] = found
+        self.pushes.append(pushes)
+        self.impulses.append(np.zeros_like(pushes))
         self.rows.append(rows.with_columns(limit=np.full(count, event, dtype=object)))
         self.added += [added] * count
         if count < len(t):
@@ -270,8 +310,15 @@ class InputTravel:
 
     def _record_here(self, event: str) -> None:
         q, speed = self.q[None], self.speed[None]
-        bend = self.dynamics.acceleration(q, speed, self._now)
+        bend = self.contacts.acceleration(q, speed, self._now)
         self._record(self._now, q, speed, bend, event, bool(event))
+
+    def _record_struck(self, name: str, before: Array, impulses: Array) -> None:
+        """The row of a shock, with the speeds before it."""
+        after, self.speed = self.speed, before
+        self._record_here(name)
+        self.impulses[-1][:] = impulses
+        self.speed = after
 
     def _end(self, why: str, event: str = "end") -> None:
         self.ended = why

@@ -238,7 +238,7 @@ class _Bodies:
         if self.steady:
             steady += [act.times(amount) for acts, amount in given for act in acts]
             if reduction.motor is not None:
-                steady += [act.times(reduction.motor_torque(np.zeros(1))[0]) for act in drive]
+                steady += [act.times(reduction.motor.torque(np.zeros(1))[0]) for act in drive]
             given = []
         #: Acts of weights, of speed², of the motor, of all loads that vary.
         self.acting: list[Sequence[Act]] = [

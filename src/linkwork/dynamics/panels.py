@@ -17,7 +17,7 @@ _TAIL = 3  # coefficients that show whether a function is resolved
 _RESOLVED = 2e-14  # of the size on the leg
 _ROUNDING = 1e-10  # of the size: coefficients below that do not fall with the panel are rounding
 _FARTHEST = 100.0  # half panels: polynomials have no meaning there
-_DEEPEST = 10  # halvings of a panel: what is then not resolved is rounding
+_DEEPEST = 20  # halvings of a panel: what is then not resolved is rounding
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)

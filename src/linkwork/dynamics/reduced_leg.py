@@ -17,11 +17,14 @@ from linkwork.dynamics.reduction import FAR, NEAR, Reduction, State
 from linkwork.forces.applied import AppliedLoads
 from linkwork.forces.geometry import Geometry
 from linkwork.foundation.arrays import Array
+from linkwork.mechanism.part.spring import Spring
 from linkwork.numerics.rows import SolvedRows
 
 __all__ = ["ReducedLeg"]
 
 _LOOKS, _POLE = 257, 1e6  # places at which formulas are tried; times their usual value
+_ZOOMS, _ZOOM = 13, 17  # rounds down to rounding, and the places of each
+_MEETS = 1e-10  # of the longest link: ends of a spring that are nearer meet
 _BEYOND = 0.03  # of a panel: how far a step may look beyond the end of its leg
 
 
@@ -32,7 +35,9 @@ class ReducedLeg:
         self.reduction, self.leg = reduction, leg
         low, high = sorted((leg.begin, leg.end))
         #: Whether the loads are tabulated, too.
-        self.tabulates = reduction.of_position and self._is_smooth(low, high)
+        self.passes = [self._passes(spring, low, high) for spring in reduction.springs]
+        steady = reduction.of_position and not any(map(len, self.passes))
+        self.tabulates = steady and self._is_smooth(low, high)
         self.variables = reduction.model.compiled.solver.variables
         scale = reduction.model.compiled.table.variable_scale
         groups = np.concatenate([[0, 1, 1], 2 + np.arange(self.variables)])
@@ -57,6 +62,32 @@ class ReducedLeg:
             np.isfinite(own).all() and own.max() <= _POLE * (1.0 + np.median(own)) for own in sizes
         )
 
+    def _passes(self, spring: Spring, low: float, high: float) -> Array:
+        """The places at which a spring passes zero length, rising."""
+        assert spring.between is not None
+        start, end = spring.between
+
+        def span(s: Array) -> tuple[Array, Array]:
+            rows = self._solved(s)
+            there = self.reduction.displaced(rows.v, rows.first, rows.second)
+            jet = there.place(end) - there.place(start)
+            return np.abs(jet.v), (jet.v.conj() * jet.d1).real
+
+        looks = np.linspace(low, high, _LOOKS)
+        lengths, rates = span(looks)
+        meets = _MEETS * self.reduction.model.equations.length_scale
+        found = [float(looks[k]) for k in (0, -1) if lengths[k] < meets]
+        grows = rates > 0.0
+        for k in np.flatnonzero(~grows[:-1] & grows[1:]):
+            near = looks[k : k + 2]
+            for _ in range(_ZOOMS):
+                near = np.linspace(near[0], near[-1], _ZOOM)
+                first = int(np.argmax(span(near)[1] > 0.0))
+                near = near[max(first, 1) - 1 :][:2]
+            if span(near)[0].min() < meets:
+                found.append(float(near[1]))
+        return np.unique(found)
+
     def _solved(self, s: Array) -> SolvedRows:
         """Positions at values of the leader in any order."""
         order = np.argsort(s, kind="stable")
@@ -80,7 +111,7 @@ class ReducedLeg:
             still = self.reduction.geometry(rows.v, 0.0 * rows.v, 0.0 * rows.v, zero)
             load = self._work(self.reduction.loaded(still), displaced)
             if self.reduction.motor is not None:
-                load = load + self.reduction.motor_torque(zero) * q1
+                load = load + self.reduction.motor.torque(zero) * q1
         return np.column_stack([mass, weight, load, rows.v, rows.first])
 
     @cached_property
@@ -160,7 +191,7 @@ class ReducedLeg:
         amounts: list[Array] = []
         if self.reduction.pushed:
             state = self.state(s, speed, t, gain)
-            applied = self.reduction.loaded(state.moving)
+            applied = self.reduction.loaded(state.moving, self.spring_margins(s))
             total = self._work(applied, state.displaced)
             for forcing in self.reduction.forcing:
                 total = total + forcing(state)
@@ -169,7 +200,7 @@ class ReducedLeg:
             amounts += [own for _, own in applied.torques]
         if self.reduction.motor is not None:
             slope = self.input_slope(s)
-            torque = self.reduction.motor_torque(slope * speed)
+            torque = self.reduction.motor.torque(slope * speed)
             total = total + torque * slope
         return total, np.column_stack([torque, *amounts])
 
@@ -202,4 +233,16 @@ class ReducedLeg:
         """The margins of all comparisons, (B, comparisons)."""
         moving = self.state(s, speed, t, gain).moving
         applied = AppliedLoads(moving, 1.0, switches=self.reduction.switches)
-        return np.stack(self.reduction.margins(applied), axis=1)
+        rates = (self.input_slope(s) * speed)[:, None]
+        return np.stack(self.reduction.margins(applied, rates, self.spring_margins(s)), axis=1)
+
+    def spring_margins(self, s: Array) -> Array:
+        """Distances to the next place where a spring passes zero length, with a sign that changes
+        there, (B, S).
+        """
+        found = np.ones((len(s), len(self.passes)))
+        for k, places in enumerate(self.passes):
+            if len(places):
+                away = s[:, None] - places
+                found[:, k] = np.abs(away).min(axis=1) * np.prod(np.sign(away), axis=1)
+        return found

@@ -9,6 +9,7 @@ from typing import Any
 
 import numpy as np
 
+from linkwork.dynamics.held_motor import motors_of
 from linkwork.expression.grammar import parse
 from linkwork.expression.tree import Binary, Node, names_in
 from linkwork.forces.applied import AppliedLoads, load_formulas
@@ -23,6 +24,7 @@ from linkwork.foundation.frozen import FrozenDict
 from linkwork.foundation.units import force_of_inertia
 from linkwork.mechanism.linkage import Linkage
 from linkwork.mechanism.loaded import LoadedBodies
+from linkwork.mechanism.part.spring import Spring
 from linkwork.motion.model import Model
 from linkwork.motion.named_quantities import RowValues
 from linkwork.results.quantity import Rate
@@ -83,7 +85,13 @@ class Reduction:
         assert isinstance(description, LoadedBodies)
         self.model, self.named, self.forcing = model, named, forcing
         self.description, self.place = description, place
-        self.motor = description.inputs[0].motor
+        #: Of all inputs; the first one is that of a mechanism with one input.
+        self.motors = motors_of(model)
+        self.motor = self.motors[0]
+        #: Springs whose tension jumps at zero length, and the signs of their margins now.
+        springs = description.springs if isinstance(description, Linkage) else ()
+        self.springs = [spring for spring in springs if self._jumps(spring)]
+        self.sides: list[bool] = []
         self.switches: Mapping[Node, float] = FrozenDict()
         #: Whether joints have friction; a rolling wheel has adhesion, which takes no energy.
         self.rubs = isinstance(description, Linkage) and any(
@@ -91,6 +99,10 @@ class Reduction:
             for name, own in description.friction.items()
             if not any("slips" in p.lets_go and name in p.names for p in description.parts)
         )
+
+    def _jumps(self, spring: Spring) -> bool:
+        numbers = self.description.numbers
+        return spring.between is not None and numbers(spring.stiffness) * numbers(spring.free) > 0
 
     @cached_property
     def acting(self) -> tuple[Any, ...]:
@@ -132,35 +144,49 @@ class Reduction:
         return bool(self.acting or self.forcing)
 
     @cached_property
-    def inertia(self) -> float:
-        """The moment of inertia, or mass, on the input, in the unit of force."""
-        given = self.description.inputs[0].inertia
-        if given is None:
-            return 0.0
+    def inertias(self) -> Array:
+        """The moments of inertia, or masses, on all inputs, in the unit of force, (p,)."""
         own = self.description
-        return own.numbers(given) * force_of_inertia(own.mass, own.length, own.force)
+        unit = force_of_inertia(own.mass, own.length, own.force)
+        given = [each.inertia for each in own.inputs]
+        return np.array([0.0 if x is None else own.numbers(x) * unit for x in given])
 
-    def motor_torque(self, rate: Array) -> Array:
-        """The motor's torque at rates of the input, [rad/s] or [length/s], (B,)."""
-        assert self.torque is not None
-        return self.torque(rate / self.model.input_scale[0])
+    @property
+    def inertia(self) -> float:
+        """That on the first input."""
+        return float(self.inertias[0])
 
     @cached_property
-    def torque(self) -> Callable[[Array], Array] | None:
-        """The motor's torque over the input's speed in file units."""
-        if self.motor is None:
-            return None
-        own = self.description
-        kind = "link" if self.model.equations.inputs[0].kind == "angle" else "slider"
-        return self.motor.curve(kind, own.numbers, own.length)
+    def switch_count(self) -> int:
+        """The number of all margins at which loads jump or have a kink."""
+        corners = sum(len(motor.corners) for motor in self.motors if motor is not None)
+        return len(self.comparisons) + corners + len(self.springs)
 
-    def margins(self, applied: AppliedLoads) -> list[Array]:
-        """Of all switches, (B,) each."""
-        return switch_margins(self.comparisons, applied)
+    def margins(self, applied: AppliedLoads, rates: Array, springs: Array) -> list[Array]:
+        """Of all switches, (B,) each: of formulas, of motors at rates (B, p), and those of the
+        springs (B, S) as given.
+        """
+        found = switch_margins(self.comparisons, applied)
+        for motor, rate in zip(self.motors, rates.T, strict=True):
+            found += [] if motor is None else motor.margins(rate)
+        return [*found, *springs.T]
 
     def switch(self, margins: Sequence[float]) -> None:
         """Let every switch have the value that belongs to its margin."""
-        self.switches = held_switches(self.comparisons, margins)
+        self.switches = held_switches(self.comparisons, margins[: len(self.comparisons)])
+        further = list(margins[len(self.comparisons) :])
+        for motor in self.motors:
+            if motor is not None:
+                corners, further = further[: len(motor.corners)], further[len(motor.corners) :]
+                motor.piece = sum(margin > 0.0 for margin in corners)
+        self.sides = [margin > 0.0 for margin in further]
+
+    def release(self) -> None:
+        """Let every load follow the state."""
+        self.switches, self.sides = FrozenDict(), []
+        for motor in self.motors:
+            if motor is not None:
+                motor.piece = None
 
     def failing_load(self, there: Geometry, before: Geometry) -> str:
         """Why a load stops the motion ``there``, in the rows in which no step succeeds; "" if none
@@ -194,9 +220,15 @@ class Reduction:
             np.ones(len(v), dtype=bool),
         )
 
-    def loaded(self, moving: Geometry) -> AppliedLoads:
-        """All loads but weights, which the masses bring."""
-        applied = AppliedLoads(moving, 1.0, switches=self.switches)
+    def loaded(self, moving: Geometry, springs: Array | None = None) -> AppliedLoads:
+        """All loads but weights, which the masses bring; ``springs`` (B, S): margins of springs."""
+        passed = {}
+        if springs is not None and self.sides:
+            passed = {
+                spring.name: np.where((margin > 0.0) == side, 1.0, -1.0)
+                for spring, margin, side in zip(self.springs, springs.T, self.sides, strict=True)
+            }
+        applied = AppliedLoads(moving, 1.0, switches=self.switches, passed=passed)
         if isinstance(self.description, Linkage):
             join_loads(FreeBodies(self.description, moving, applied))
             return applied

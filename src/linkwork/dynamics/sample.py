@@ -11,7 +11,8 @@ __all__ = ["Sample"]
 class Sample:
     """A state at a time: the leg, laps gained, place, speed and acceleration of the leader.
 
-    ``event``: what happens there, "" for one that was asked for; ``lost``: the work of friction.
+    ``event``: what happens there, "" for one that was asked for; ``lost``: the work of friction;
+    ``stop``: the number of the bound that pushes, -1 for none, with its ``push`` or ``impulse``.
     """
 
     t: float
@@ -22,3 +23,6 @@ class Sample:
     acceleration: float
     event: str = ""
     lost: float = 0.0
+    stop: int = -1
+    push: float = 0.0
+    impulse: float = 0.0

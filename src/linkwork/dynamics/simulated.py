@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
 
 import numpy as np
 
@@ -16,6 +17,7 @@ from linkwork.mechanism.loaded import LoadedBodies
 from linkwork.mechanism.speed import speed_per_second
 from linkwork.motion.model import Model
 from linkwork.motion.stop_quantities import bounded_quantity
+from linkwork.results.motion import Motion
 
 __all__ = [
     "bounds_of",
@@ -24,6 +26,7 @@ __all__ = [
     "model_name",
     "start_speeds",
     "straight_or_stop",
+    "with_stops",
 ]
 
 _MASSLESS = 1e-12  # of the largest eigenvalue of the matrix of masses: none
@@ -116,6 +119,18 @@ def start_speeds(model: Model, given: Number | Mapping[str, Number]) -> Array:
             raise InputError(f"start speed: {error.message}") from None
         speeds[k] = own * float(model.input_scale[k])
     return speeds
+
+
+def with_stops(motion: Motion, bounds: Sequence[Bound], pushes: Array, impulses: Array) -> Motion:
+    """The motion with what its stops give: pushes and impulses (K, S) of its first K rows."""
+    tables: list[dict[str, Array]] = [{}, {}]
+    for table, parts in zip(tables, (pushes, impulses), strict=True):
+        for bound, part in zip(bounds, parts.T, strict=True):
+            none = np.zeros(len(motion))
+            none[len(part) :] = np.nan
+            none[: len(part)] = bound.side * part
+            table[bound.asked.name] = table.get(bound.asked.name, 0.0) + none
+    return replace(motion, stop_forces=tables[0], stop_impulses=tables[1])
 
 
 def bounds_of(named: Model) -> list[Bound]:

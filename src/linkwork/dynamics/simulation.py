@@ -9,10 +9,17 @@ import numpy as np
 
 from linkwork.dynamics.contacts import with_contacts, with_flywheels
 from linkwork.dynamics.curve import PositionCurve, curve_of
+from linkwork.dynamics.energy import watch_energy
 from linkwork.dynamics.input_simulation import simulate_inputs
 from linkwork.dynamics.reduction import Forcing, Reduction
 from linkwork.dynamics.sample import Sample
-from linkwork.dynamics.simulated import bounds_of, check_loaded, start_speeds, straight_or_stop
+from linkwork.dynamics.simulated import (
+    bounds_of,
+    check_loaded,
+    start_speeds,
+    straight_or_stop,
+    with_stops,
+)
 from linkwork.dynamics.travel import Travel
 from linkwork.foundation.arrays import Array
 from linkwork.foundation.errors import InputError, KeyWords, key_text
@@ -175,6 +182,12 @@ def _motion(travel: Travel, certify: bool) -> Motion:
     if travel.ended:
         told = f"the motion ends at t = {travel.t:.10g} s: {travel.ended}"
     motion = motion_of_rows(named, rows, told, added)
+    pushes, impulses = np.zeros((2, len(samples), len(travel.bounds)))
+    for k, sample in enumerate(samples):
+        if sample.stop >= 0:
+            pushes[k, sample.stop], impulses[k, sample.stop] = sample.push, sample.impulse
+    motion = with_stops(motion, travel.bounds, pushes, impulses)
+    motion = watch_energy(motion, travel.reduction)
     if not travel.reduction.rubs:
         return motion
     lost = np.array([*(sample.lost for sample in samples), *([np.nan] * len(missing))])

@@ -1,4 +1,4 @@
-"""One turn of an input straight across change points, by analytic continuation.
+"""Turns of an input straight across change points, by analytic continuation.
 
 Where branches cross, the Jacobian is singular but the motion that goes straight on is smooth. The
 polynomial through the last positions is continued beyond the crossing; there the branches are apart
@@ -28,28 +28,40 @@ _SINGULAR = 100.0  # condition beyond which a position is taken from its polynom
 _FIRST, _LARGEST, _SHORTEST = 0.01, 0.07, 1e-4  # steps [rad]
 _OFF = 1e-5  # weighted: how far a prediction may be from the position
 _CONTINUED = 1e-8  # weighted: how well two polynomials must agree at a crossing
-_MOST = 4000
+_MOST = 4000  # steps in a turn
+_MOST_TURNS = 12  # after which a motion straight on counts as never closing
+_CLOSED = 1e-9  # weighted: how well a turn ends where it began
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Turn:
-    """Positions (K, N) at rising values (K,) of the input, one turn and a little more."""
+    """Positions (K, N) at rising values (K,) of the input, until they repeat and a little more.
+
+    ``turns``: of the input, after which they do.
+    """
 
     solver: BlockSolver
     begin: float
     at: Array
     v: Array
+    turns: int = 1
 
     @property
     def end(self) -> float:
-        """A turn later."""
-        return self.begin + FULL_TURN
+        """Where the positions repeat."""
+        return self.begin + self.turns * FULL_TURN
 
     def gain(self, leads: Parametrizations) -> Array:
-        """What the variables gain in the turn, (N,)."""
+        """What the variables gain until then, (N,)."""
         ends, _ = self.interpolate(np.array([self.begin, self.end]))
         grown = ends[1] - ends[0]
         return np.where(leads.is_angle, FULL_TURN * np.round(grown / FULL_TURN), 0.0)
+
+    def repeats(self, leads: Parametrizations) -> bool:
+        """Whether they do."""
+        (first, last), _ = self.interpolate(np.array([self.begin, self.end]))
+        gap = np.abs(last - first - self.gain(leads)) / self.solver.variable_scale
+        return bool(gap.max() < _CLOSED)
 
     def interpolate(self, values: Array) -> tuple[Array, tuple[Array, Array]]:
         """Positions (B, N) at values of the input, with both derivatives, by polynomials."""
@@ -97,16 +109,26 @@ class Turn:
         )
 
 
-def turn_of(solver: BlockSolver, start: Array) -> Turn | None:
-    """A turn from a regular position (N,); ``None`` if it cannot be followed."""
+def turn_of(leads: Parametrizations, solver: BlockSolver, start: Array) -> Turn | None:
+    """The turns from a regular position (N,) until positions repeat; ``None`` if they cannot be
+    followed, or never do.
+    """
+    turns = 1
     begin = float(start[-1])
+    sharp = [True]  # which nodes are solutions: those next to a crossing are polynomials
     scale = solver.variable_scale
     at, v = [begin], [start]
     h = _FIRST
     quick = replace(solver.options, max_steps=8)
-    for _ in range(_MOST):
-        if at[-1] > begin + FULL_TURN + _LARGEST:
-            return Turn(solver=solver, begin=begin, at=np.array(at), v=np.stack(v))
+    for _ in range(_MOST_TURNS * _MOST):
+        if at[-1] > begin + turns * FULL_TURN + _LARGEST:
+            nodes = np.array(at)[sharp], np.stack(v)[sharp]
+            turn = Turn(solver=solver, begin=begin, at=nodes[0], v=nodes[1], turns=turns)
+            if turn.repeats(leads):
+                return turn
+            turns += 1
+            if turns > _MOST_TURNS:
+                return None
         t = at[-1] + h
         guess, doubt = _continued(solver, at, v, t)
         found = solver.solve(guess[None, :], quick)
@@ -116,9 +138,11 @@ def turn_of(solver: BlockSolver, start: Array) -> Turn | None:
         if near and float((np.abs(doubt) / scale).max()) < _CONTINUED:
             at.append(t)
             v.append(guess)
+            sharp.append(False)
         elif found.status[0] == CONVERGED and off < _OFF and not near:
             at.append(t)
             v.append(found.v[0])
+            sharp.append(True)
             h = min(1.3 * h, _LARGEST)
         else:
             h *= 0.5

@@ -53,6 +53,7 @@ class AppliedLoads:
     ``forces`` are (point, force, link), ``torques`` (link, torque), ``stored`` the energies of
     springs and weights, (B,) each; ``rate`` is the speed of the leading input, 0 without one.
     ``switches``: comparisons in formulas that do not follow the rows, with their value 0 or 1.
+    ``passed``: springs beyond their zero length that pull as if they had not passed it, -1, (B,).
     ``undefined``: formulas with rows in which they have no finite value, (B,).
     """
 
@@ -65,6 +66,7 @@ class AppliedLoads:
     stored: list[Array] = field(default_factory=list)
     stored_rates: list[Array] = field(default_factory=list)
     switches: Mapping[Node, float] = FrozenDict()
+    passed: Mapping[str, Array] = FrozenDict()
     undefined: dict[str, BoolArray] = field(default_factory=dict)
 
     @cached_property

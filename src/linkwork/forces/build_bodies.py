@@ -14,6 +14,7 @@ from linkwork.forces.geometry import Geometry
 from linkwork.forces.part.index import join_parts
 from linkwork.forces.pins import join_pins
 from linkwork.forces.read_bodies import read_geometry
+from linkwork.forces.stops import stop_acts
 from linkwork.mechanism.linkage import Linkage
 from linkwork.motion.model import Model
 from linkwork.results.quantities.definition import Solved
@@ -96,4 +97,4 @@ def known_acts(bodies: FreeBodies) -> list[Act]:
     acts += [
         Act(bodies.link(body.link), body.place, body.force, body.torque) for body in applied.masses
     ]
-    return acts
+    return [*acts, *stop_acts(bodies)]

@@ -17,6 +17,7 @@ from linkwork.forces.geometry import Geometry
 from linkwork.forces.joint_forces import FrictionEfforts, joint_forces
 from linkwork.forces.part.load import apply_load
 from linkwork.forces.pins import read_first_links
+from linkwork.forces.stops import stop_efforts, stop_values, undetermined_stops
 from linkwork.forces.virtual_work import efforts, energies
 from linkwork.foundation.arrays import Array, BoolArray, ComplexArray, StatusArray
 from linkwork.foundation.frozen import FrozenDict
@@ -134,6 +135,10 @@ def solve_forces(model: Model, solved: Solved) -> ForceRows:
             bodies = read_bodies(geometry, applied)
         by_work, largest = efforts(applied)
         found = _Solution(geometry, applied, _has_rates(by_work, geometry))
+        stopped = undetermined_stops(geometry, bodies)
+        found.regular &= ~stopped
+        if bodies is not None:
+            by_work = by_work + stop_efforts(bodies)
         zero = np.zeros_like(by_work)
         rubbing = FrictionEfforts(
             efforts=zero, largest=zero, doubt=np.zeros(geometry.rows, dtype=bool)
@@ -148,7 +153,9 @@ def solve_forces(model: Model, solved: Solved) -> ForceRows:
             if not applied.rate:
                 _add_backward(found, bodies, by_work)
         # loads, weights and energies are known at rest all the same
-        found.regular |= found.held
+        found.regular |= found.held | stopped
+        for name, kind, about, value in stop_values(geometry):
+            found.add(name, kind, about, value)
         for name, kind, about, value in totals(geometry, applied):
             point, pushed, _ = name.partition(".load.")
             found.add(name, kind, about, value, pin=(point, "", "") if pushed else ())
@@ -161,6 +168,7 @@ def solve_forces(model: Model, solved: Solved) -> ForceRows:
     partly = np.any([value.undetermined for value in found.values.values()], axis=0)
     status[partly & found.regular] = ForceStatus.UNDETERMINED.code
     status[found.locked & ~lost] = ForceStatus.SELF_LOCKING.code
+    status[stopped & ~lost] = ForceStatus.STOPPED.code
     status[found.held & ~lost] = ForceStatus.HELD.code
     return ForceRows(
         values=found.values, status=status.astype(np.int8), proved=found.proved, undefined=undefined

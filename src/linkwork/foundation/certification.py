@@ -43,6 +43,11 @@ class Certification(CodedEnum):
         "would take too many steps"
     )
 
+    ENERGY_DRIFTS = (
+        "the position is proved, but the energy of the motion has drifted by more than 1e-9 of its "
+        "largest kinetic energy"
+    )
+
     @property
     def certified(self) -> bool:
         """Whether everything that belongs to the position is proved."""

@@ -31,7 +31,7 @@ MOTOR_KEYS = (
 )
 
 
-@internal("mistakes", "curve", "constant")
+@internal("mistakes", "curve", "corners", "constant")
 @dataclass(frozen=True, kw_only=True)
 class Motor:
     """A motor on an input, for simulations.
@@ -125,7 +125,7 @@ class Motor:
     def curve(self, kind: str, numbers: Numbers, length: str) -> Callable[[Array], Array]:
         """The torque over speeds (B,) in the unit of the file per second."""
         if self.speeds:
-            known = [speed_per_second(each, kind, numbers, length) for each in self.speeds]
+            known = self.corners(kind, numbers, length)
             torques = [numbers(each) for each in self.torques]
             return lambda speed: np.interp(speed, known, torques)
         assert self.stall is not None
@@ -134,3 +134,8 @@ class Motor:
             return lambda speed: np.full_like(speed, stall)
         free = speed_per_second(self.free_speed, kind, numbers, length)
         return lambda speed: stall * (1.0 - speed / free)
+
+    def corners(self, kind: str, numbers: Numbers, length: str) -> Array:
+        """The speeds of its table in the unit of the file per second, (C,)."""
+        known = (speed_per_second(each, kind, numbers, length) for each in self.speeds)
+        return np.array([float(speed) for speed in known])

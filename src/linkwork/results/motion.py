@@ -104,6 +104,9 @@ class Motion:
         Of a simulation with friction: the energy that it has taken so far.
     flywheel_energy : array (N,), optional
         Of a simulation: the kinetic energy of the inertia on its inputs.
+    stop_forces, stop_impulses : Mapping[str, array (N,)]
+        Of a simulation: the force or moment with which stops push a quantity, and the impulse of
+        their shocks, by its name; positive where it makes the quantity grow.
 
     Examples
     --------
@@ -150,6 +153,8 @@ class Motion:
     failure: Failure | None = None
     friction_work: Array | None = None
     flywheel_energy: Array | None = None
+    stop_forces: Mapping[str, Array] = FrozenDict()
+    stop_impulses: Mapping[str, Array] = FrozenDict()
 
     def __post_init__(self) -> None:
         for field in (*EVIDENCE, "added", "q"):
@@ -157,6 +162,9 @@ class Motion:
         for field in ("friction_work", "flywheel_energy"):
             if getattr(self, field) is not None:
                 object.__setattr__(self, field, read_only(getattr(self, field)))
+        for field in ("stop_forces", "stop_impulses"):
+            table = {name: read_only(values) for name, values in getattr(self, field).items()}
+            object.__setattr__(self, field, FrozenDict(table))
         inputs = {name: read_only(values) for name, values in self.inputs.items()}
         object.__setattr__(self, "inputs", FrozenDict(inputs))
 

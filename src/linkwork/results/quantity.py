@@ -27,9 +27,11 @@ class Kind(Enum):
     MOMENT = "moment"
     ENERGY = "energy"
     POWER = "power"
+    IMPULSE = "impulse"
+    TURN = "angular impulse"
 
 
-_OF_FORCE = (Kind.FORCE, Kind.MOMENT, Kind.ENERGY, Kind.POWER)
+_OF_FORCE = (Kind.FORCE, Kind.MOMENT, Kind.ENERGY, Kind.POWER, Kind.IMPULSE, Kind.TURN)
 
 
 @dataclass(frozen=True)
@@ -44,7 +46,11 @@ class Units:
         """Unit of a value: ``deg``, ``mm``, ``1/mm``, ``N``, ``N·mm`` or nothing."""
         if kind in _OF_FORCE:
             work = f"{self.force}·{self.length}"
-            return {Kind.FORCE: self.force, Kind.POWER: f"{work}/s"}.get(kind, work)
+            others = {
+                Kind.FORCE: self.force, Kind.POWER: f"{work}/s", Kind.IMPULSE: f"{self.force}·s",
+                Kind.TURN: f"{work}·s",
+            }  # fmt: skip
+            return others.get(kind, work)
         if kind is Kind.TIME:
             return "s"
         return self.angle.value if kind is Kind.ANGLE else self._of_length(kind)

@@ -52,6 +52,10 @@ class ForceStatus(CodedEnum):
         "friction holds the mechanism at rest: it takes any value up to its limit, and forces are "
         "not determined"
     )
+    STOPPED = (
+        "a stop on a quantity of several bodies pushes, or friction holds the mechanism against a "
+        "stop: forces are not determined; bound a link, a slider or a coordinate, without friction"
+    )
 
 
 @internal("kinds")

@@ -30,13 +30,13 @@ def _pull(spring: Spring, between: tuple[str, str], bodies: FreeBodies) -> None:
     applied, numbers = bodies.applied, bodies.geometry.numbers
     start, end = map(bodies.geometry.place, between)
     span = end - start
-    length = np.abs(span.v)
+    length = np.abs(span.v) * applied.passed.get(spring.name, 1.0)
     with np.errstate(all="ignore"):
-        along: Any = span.v / length
+        # a spring of no length has no direction
+        along: Any = np.where(length == 0.0, 0.0, span.v / length)
         rate = (along.conj() * span.d1).real
     tension = _force(spring, bodies, length - numbers(spring.free), rate)
-    # a spring of no length has no direction
-    pull: Any = tension * np.where(length == 0.0, 0.0, along)
+    pull = tension * along
     applied.push(between[0], pull)
     applied.push(between[1], -pull)
     about = "tension of the spring and its damper"
