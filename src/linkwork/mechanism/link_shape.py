@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
+from itertools import combinations
 
 import numpy as np
 
@@ -18,13 +19,14 @@ from linkwork.foundation.elementwise import (
     vector,
 )
 from linkwork.foundation.lanes import Rest, rest_of
-from linkwork.mechanism.least_norm import full_rank, least_norm
+from linkwork.mechanism.least_norm import independent, least_norm
 from linkwork.mechanism.link_dimension import Distance, Given, VertexAngle
 
 __all__ = ["LinkShape", "ShapeError", "place"]
 
 _AGREE = 1e-9
 _MOST_STEPS = 60
+_SMALL = 1e-10  # relative: Newton's last step
 _FIRST_STEPS = 6  # most shapes need four
 
 
@@ -55,19 +57,20 @@ class _Placing:
     distances: dict[frozenset[str], float]
     vertices: Sequence[VertexAngle]
     z: dict[str, complex] = field(default_factory=dict)
-    measured: list[Distance] = field(default_factory=list)
 
-    def distance(self, a: str, b: str, measure: bool) -> float | None:
-        """The given distance, or on request the sketched one, recorded as measured."""
-        given = self.distances.get(frozenset((a, b)))
-        if given is not None or not measure:
-            return given
-        length = abs(self.sketch[b] - self.sketch[a])
-        if length == 0.0:
-            raise ShapeError(f"{a} and {b} are sketched at the same place: give {a} {b} a length")
-        self.measured.append(Distance(a, b, length))
-        self.distances[frozenset((a, b))] = length
-        return length
+    def place_all(self) -> bool:
+        """Place all points by given dimensions, from the first distance that leads to all."""
+        rays = {frozenset((v.vertex, ray)) for v in self.vertices for ray in (v.a, v.b)}
+        # a side of an angle first: its vertex has to be placed before the other side
+        first = frozenset(self.points[:2])
+        for pair in sorted(self.distances, key=lambda pair: (pair != first, pair not in rays)):
+            a, b = sorted(pair, key=self.points.index)
+            self.z = {a: 0j, b: self.distances[pair] + 0j}
+            while self.place_next():
+                pass
+            if len(self.z) == len(self.points):
+                return True
+        return False
 
     def direction(self, point: str) -> tuple[str, float] | None:
         """A placed vertex and the given direction from it to ``point``."""
@@ -80,35 +83,30 @@ class _Placing:
                 return v.vertex, phase(self.z[v.b] - self.z[v.vertex]) - v.angle
         return None
 
-    def place_next(self, measure: int) -> bool:
-        """Place one more point from given and at most ``measure`` measured dimensions."""
+    def place_next(self) -> bool:
+        """Place one more point."""
         for point in self.points:
             if point in self.z:
                 continue
+            centres = [q for q in self.z if frozenset((q, point)) in self.distances]
             seen = self.direction(point)
-            if seen is not None:
+            if seen is not None and centres:
                 vertex, direction = seen
-                length = self.distance(vertex, point, measure >= 1)
+                length = self.distances.get(frozenset((vertex, point)))
                 if length is not None:
                     self.z[point] = self.z[vertex] + rect(length, direction)
-                    return True
-            centres = [q for q in self.z if frozenset((q, point)) in self.distances]
-            if seen is not None and centres:
-                self.z[point] = self.on_ray(point, *seen, centres[0])
+                else:
+                    self.z[point] = self.on_ray(point, vertex, direction, centres[0])
                 return True
             # two circles around placed points determine a point up to its side
-            if len(centres) + measure < 2:
-                continue
-            others = [q for q in self.points if q in self.z and q not in centres]
-            first, second = (centres + others)[:2]
-            self.z[point] = self.trilaterated(point, first, second)
-            return True
+            if len(centres) >= 2:
+                self.z[point] = self.trilaterated(point, *centres[:2])
+                return True
         return False
 
     def on_ray(self, point: str, vertex: str, direction: float, centre: str) -> complex:
         """Where a ray from a vertex meets a circle, at the distance nearest to the sketched one."""
-        radius = self.distance(centre, point, measure=False)
-        assert radius is not None
+        radius = self.distances[frozenset((centre, point))]
         seen = (self.z[centre] - self.z[vertex]) * rect(1.0, -direction)
         square = radius * radius - seen.imag * seen.imag
         if square < -_AGREE * radius * radius:
@@ -125,10 +123,7 @@ class _Placing:
 
     def trilaterated(self, point: str, first: str, second: str) -> complex:
         """The intersection of two circles, on the side of the sketch."""
-        r1 = self.distance(first, point, measure=True)
-        r2 = self.distance(second, point, measure=True)
-        assert r1 is not None
-        assert r2 is not None
+        r1, r2 = (self.distances[frozenset((centre, point))] for centre in (first, second))
         base = self.z[second] - self.z[first]
         d = abs(base)
         if d <= _AGREE * largest((r1, r2)):
@@ -178,54 +173,61 @@ def place(
 
     Notes
     -----
-    Points are placed one by one if possible; otherwise Gauss-Newton solves all given dimensions
-    together with the sketched distances that complete them.
+    Where exactly the missing distances are not given, they are measured. Where more are not given,
+    the shape is the one nearest to the sketch: the sum of the squared distances of its points from
+    the sketched ones is least. Neither depends on the order or the names of points and dimensions.
+
+    Points are placed one by one if possible; otherwise Gauss-Newton solves all dimensions together.
     """
     if len(points) == 1:
         return LinkShape({points[0]: 0j})
-    known = {frozenset(d.points): d.length for d in distances}
-    state = _Placing(points, sketch, known, vertices)
-    a, b = _base(points, distances, vertices)
-    length = state.distance(a, b, measure=True)
-    assert length is not None
-    state.z = {a: 0j, b: length + 0j}
-    while len(state.z) < len(points):
-        # given dimensions first, so that as few as possible are measured in the sketch
-        if not (state.place_next(0) or state.place_next(1)):
-            state.place_next(2)
     given: list[Given] = [*distances, *vertices]
-    # what places a point before the last dimension is used need not be measured after all
-    measured = state.measured if len(given) < 2 * len(points) - 3 else []
-    z = state.z
-    if not all(g.agrees(z, _AGREE) for g in given):
-        # n points have 2n coordinates; a link may still be moved and turned, 3 freedoms
-        if len(given) > 2 * len(points) - 3:
-            raise _contradiction(given, z, points)
-        try:
-            with np.errstate(all="ignore"):  # overflow counts as disagreement and is reported
-                z, measured = _together(points, sketch, given)
-        except np.linalg.LinAlgError:
-            raise ShapeError("no link has these dimensions near the sketch") from None
-    return LinkShape(_upright(z, points), tuple(measured))
+    # n points have 2n coordinates; a link may still be moved and turned, 3 freedoms
+    lacks = 2 * len(points) - 3 - len(given)
+    measured = _measurable(points, sketch, given) if lacks > 0 else []
+    if len(measured) != lacks:
+        measured = []
+    for d in measured:
+        if not d.length:
+            raise ShapeError(
+                f"{d.a} and {d.b} are sketched at the same place: give {d.key} a length"
+            )
+    known = {frozenset(d.points): d.length for d in (*distances, *measured)}
+    state = _Placing(points, sketch, known, vertices)
+    if (lacks <= 0 or measured) and state.place_all():
+        if all(g.agrees(state.z, _AGREE) for g in given):
+            return LinkShape(_upright(state.z, points), tuple(measured))
+    else:
+        state.z = {}
+    try:
+        with np.errstate(all="ignore"):  # overflow counts as disagreement and is reported
+            z, more = _together(points, sketch, [*given, *measured])
+    except (np.linalg.LinAlgError, ShapeError) as error:
+        if lacks < 0 and state.z:
+            raise _contradiction(given, state.z, points) from None
+        if isinstance(error, ShapeError):
+            raise
+        raise ShapeError("no link has these dimensions near the sketch") from None
+    return LinkShape(_upright(z, points), (*measured, *more))
 
 
-def _base(
-    points: tuple[str, ...], distances: Sequence[Distance], vertices: Sequence[VertexAngle]
-) -> tuple[str, str]:
-    """The pair placed first: the link's first two points unless others have a given distance."""
-    given = {frozenset(d.points) for d in distances}
-    first = (points[0], points[1])
-    if frozenset(first) in given or not given:
-        return first
-    pairs = [d.points for d in distances]
-    with_angle = [
-        (v.vertex, ray)
-        for v in vertices
-        for ray in (v.a, v.b)
-        if frozenset((v.vertex, ray)) in given
+def _measurable(
+    points: tuple[str, ...], sketch: Mapping[str, complex], given: Sequence[Given]
+) -> list[Distance]:
+    """The distances in the sketch that are not given, nor across from a given angle."""
+    known = {frozenset(g.points) for g in given if isinstance(g, Distance)}
+    for vertex in points:
+        fans = [{g.a, g.b} for g in given if isinstance(g, VertexAngle) and g.vertex == vertex]
+        # angles at one vertex add up
+        for k, fan in enumerate(fans):
+            for other in fans[:k]:
+                fan |= other if fan & other else set()
+        known |= {frozenset(pair) for fan in fans for pair in combinations(fan, 2)}
+    return [
+        Distance(a, b, abs(sketch[b] - sketch[a]))
+        for a, b in combinations(points, 2)
+        if frozenset((a, b)) not in known
     ]
-    a, b = (with_angle or pairs)[0]
-    return a, b
 
 
 def _contradiction(
@@ -242,30 +244,22 @@ def _contradiction(
 
 
 def _together(
-    points: tuple[str, ...], sketch: Mapping[str, complex], given: Sequence[Given]
+    points: tuple[str, ...], sketch: Mapping[str, complex], rows: Sequence[Given]
 ) -> tuple[dict[str, complex], list[Distance]]:
-    """Solve all dimensions together from the sketch, completed by measured distances."""
-    rows: list[Given] = list(given)
-    measured: list[Distance] = []
+    """Solve all dimensions together, nearest to the sketch; measure there what they leave open."""
     # the sketch selects a shape; only what is measured in it enters its dimensions
     start = {p: detached(sketch[p]) for p in points}
-    for i in range(len(points)):
-        for j in range(i + 1, len(points)):
-            if len(rows) >= 2 * len(points) - 3:
-                break
-            length = abs(sketch[points[j]] - sketch[points[i]])
-            candidate = Distance(points[i], points[j], length)
-            # a measured length is added only if it is independent of the others
-            if length and full_rank(_slopes(start, _detached([*rows, candidate])), 1e-9):
-                rows.append(candidate)
-                measured.append(candidate)
     held = _detached(rows)
     placed = _gauss_newton(start, held, _MOST_STEPS)
-    if any(own is not row for own, row in zip(held, rows, strict=True)):
+    varies = any(own is not row for own, row in zip(held, rows, strict=True))
+    missing = _missing(points, rows)
+    if missing:
+        placed = _nearest(placed, sketch, held, rows)
+    elif varies:
         # one exact step from the solution has its derivatives (implicit function theorem)
         errors = [row.error(placed) for row in rows]
         placed = _moved(placed, least_norm(_slopes(placed, held), errors))
-    wrong = [row for row in given if not row.agrees(placed, _AGREE)]
+    wrong = [row for row in rows if not row.agrees(placed, _AGREE)]
     if wrong:
         raise ShapeError(
             f"no link has these dimensions near the sketch; nearest has {wrong[0].shown(placed)}, "
@@ -273,7 +267,88 @@ def _together(
             wrong[0].table,
             wrong[0].key,
         )
-    return placed, measured
+    return placed, [Distance(a, b, abs(placed[b] - placed[a])) for a, b in missing]
+
+
+def _missing(points: tuple[str, ...], rows: Sequence[Given]) -> list[tuple[str, str]]:
+    """Pairs whose distances complete the dimensions of a link, in whatever place its points are."""
+    places = np.random.default_rng(len(points)).normal(size=(len(points), 2)) @ [1.0, 1j]
+    z = dict(zip(points, map(complex, places), strict=True))
+    across = {frozenset((row.a, row.b)) for row in rows if isinstance(row, VertexAngle)}
+    pairs = sorted(combinations(points, 2), key=lambda pair: frozenset(pair) in across)
+    unit = [Distance(row.a, row.b, 1.0) if isinstance(row, Distance) else row for row in rows]
+    candidates = [Distance(a, b, 1.0) for a, b in pairs]
+    found = independent(_slopes(z, [*unit, *candidates]))
+    return [pairs[k - len(rows)] for k in found if k >= len(rows)]
+
+
+def _nearest(
+    z: dict[str, complex],
+    sketch: Mapping[str, complex],
+    held: Sequence[Given],
+    rows: Sequence[Given],
+) -> dict[str, complex]:
+    """The shape with given dimensions whose points are nearest to the sketched ones.
+
+    Newton's method for the least sum of squares under conditions: the points, and a multiplier for
+    every dimension. ``held``: the rows without derivatives.
+    """
+    size = largest(abs(z[b] - z[a]) for a, b in combinations(z, 2))
+    weights: Sequence[float] = [0.0] * len(rows)
+    small = False
+    for _ in range(_MOST_STEPS):
+        start = {p: detached(sketch[p]) for p in z}
+        step = _lagrange_step(z, start, held, held, weights, size)
+        moved = _moved(z, step)
+        z = {p: choose(small, place, moved[p]) for p, place in z.items()}
+        weights = [w - change for w, change in zip(weights, step[2 * len(z) :], strict=True)]
+        # the error after a step is about its square
+        small = largest(map(abs, step[: 2 * len(z)])) <= _SMALL * size
+        if everywhere(small):
+            # one exact step from the solution has its derivatives (implicit function theorem)
+            return _moved(z, _lagrange_step(z, sketch, held, rows, weights, size))
+    raise np.linalg.LinAlgError
+
+
+def _lagrange_step(
+    z: Mapping[str, complex],
+    sketch: Mapping[str, complex],
+    held: Sequence[Given],
+    rows: Sequence[Given],
+    weights: Sequence[float],
+    size: float,
+) -> Sequence[float]:
+    """Newton's step of x, y and multipliers, to be subtracted.
+
+    Stationary: z - sketch + Σ w ∇(size · error) = 0; dimensions: size · error = 0.
+    """
+    count, many = 2 * len(z), len(rows)
+    slopes = [[size * slope for slope in row] for row in _slopes(z, held)]
+    bend = _bend(z, held, [size * w for w in weights])
+    matrix = [[*bend[k], *(row[k] for row in slopes)] for k in range(count)]
+    matrix += [[*row, *[0.0] * many] for row in slopes]
+    pull = _slopes(z, rows)
+    away = [z[p] - sketch[p] for p in z]
+    right = [d.real for d in away] + [d.imag for d in away]
+    for k, w in enumerate(weights):
+        right = [r + size * w * slope for r, slope in zip(right, pull[k], strict=True)]
+    return least_norm(matrix, [*right, *(size * row.error(z) for row in rows)])
+
+
+def _bend(
+    z: Mapping[str, complex], rows: Sequence[Given], weights: Sequence[float]
+) -> list[list[float]]:
+    """The identity plus the second derivatives of weighted errors, x then y: 2n rows of 2n."""
+    names, count = list(z), len(z)
+    found = [[float(i == k) for k in range(2 * count)] for i in range(2 * count)]
+    for row, weight in zip(rows, weights, strict=True):
+        for point in row.points:
+            for axis, unit in ((0, 1.0 + 0j), (count, 1j)):
+                for other, change in row.bend(z, point, unit).items():
+                    i, k = names.index(other), names.index(point) + axis
+                    found[i][k] = found[i][k] + weight * change.real
+                    found[i + count][k] = found[i + count][k] + weight * change.imag
+    return found
 
 
 def _gauss_newton(

@@ -68,6 +68,10 @@ def check(model: Model) -> CheckReport:
         mobility_why=mobility.why,
         redundant=() if not start.status.ok else tuple(_redundant(model, start.v)),
         measured=measured,
+        measured_in_parts=tuple(
+            (m.part, m.quantity, m.value / units.scale(Kind(m.kind)), units.of(Kind(m.kind)))
+            for m in equations.measured
+        ),
         start=start.status,
         start_message=start.message,
         start_input={
