@@ -90,8 +90,18 @@ class Bodies(LoadedBodies):
                 yield link
 
     def sketched_angle(self, link: str) -> float:
-        """The direction of a link in the sketch [rad]; 0 for ground and wheels of one point."""
-        if link == GROUND or len(self.links[link]) < 2:
+        """The angle of a link in the sketch [rad]; 0 for ground and wheels of one point.
+
+        A link of more than two points is turned so that its points are nearest to the sketched
+        ones, whichever of them is the first.
+        """
+        points = self.links[link]
+        if link == GROUND or len(points) < 2:
             return 0.0
-        first, second = self.links[link][:2]
-        return phase(self.sketched(second) - self.sketched(first))
+        sketched = [self.sketched(point) for point in points]
+        local = self.shapes.local.get(link)
+        if len(points) == 2 or local is None:
+            return phase(sketched[1] - sketched[0])
+        middle = sum(sketched) / len(points)
+        spans = zip(sketched, points, strict=True)
+        return phase(sum((z - middle) * local[point].conjugate() for z, point in spans))
