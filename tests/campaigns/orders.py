@@ -76,11 +76,11 @@ def partly_dimensioned(number: int) -> lw.Mechanism:
         other = next(p for p in links[a] if p != at)
         links |= {"planet": [at], "sun": [other]}
         angle = float(rng.uniform(-180, 180)) if rng.random() < 0.5 else None
-        wheels["welds"] = [lw.Weld(links=("planet", b), angle=angle)]
-        wheels["gears"] = [
+        wheels["welds"] = (lw.Weld(links=("planet", b), angle=angle),)
+        wheels["gears"] = (
             lw.Gear(name="mesh", wheels=("sun", "planet"), centers=(other, at), arm=a,
-                    teeth=(int(rng.integers(10, 40)), int(rng.integers(10, 40))))
-        ]  # fmt: skip
+                    teeth=(int(rng.integers(10, 40)), int(rng.integers(10, 40)))),
+        )  # fmt: skip
     return lw.Mechanism(
         replace(
             linkage,
@@ -88,7 +88,7 @@ def partly_dimensioned(number: int) -> lw.Mechanism:
             links={name: tuple(points) for name, points in links.items()},
             lengths=lengths,
             angles=angles,
-            **{table: tuple(parts) for table, parts in wheels.items()},
+            **wheels,
         )
     )
 
@@ -104,7 +104,8 @@ def _shuffled(table: Mapping[str, Any], rng: Rng) -> dict[str, Any]:
 def _directed(linkage: Linkage) -> set[str]:
     """Links whose angle is a number of the file: their first two points define its zero."""
     found = {GROUND}
-    for part in (*linkage.parts, *linkage.inputs):
+    named: tuple[Any, ...] = (*linkage.parts, *linkage.inputs)
+    for part in named:
         for entry in (getattr(part, f.name) for f in fields(part)):
             found |= {entry} if isinstance(entry, str) else set()
             found |= set(entry) if isinstance(entry, tuple) else set()
@@ -158,7 +159,7 @@ def _swapped(part: Any, rng: Rng) -> Any:
         return part
     match part:
         case lw.Gear() | lw.Belt() if part.phase is None:
-            sizes = {
+            sizes: dict[str, Any] = {
                 key: None if getattr(part, key) is None else getattr(part, key)[::-1]
                 for key in ("radii", "teeth")
             }
@@ -167,7 +168,7 @@ def _swapped(part: Any, rng: Rng) -> Any:
             given = part.angle
             angle = f"-({given})" if isinstance(given, str) else given if given is None else -given
             return replace(part, links=part.links[::-1], angle=angle)
-        case lw.Spring() if part.links is None:
+        case lw.Spring() if part.between is not None:
             return replace(part, between=part.between[::-1])
     return part
 
@@ -184,11 +185,14 @@ def renamed(mechanism: lw.Mechanism, rng: Rng) -> tuple[lw.Mechanism, dict[str, 
     def keys(table: Mapping[str, Any]) -> dict[str, Any]:
         return {" ".join(map(new, key.split())): number for key, number in table.items()}
 
-    inputs = [
-        replace(which, **{key: new(entry) for key in ("link", "joint", "relative_to")
-                          if (entry := getattr(which, key)) is not None})
-        for which in linkage.inputs
-    ]  # fmt: skip
+    inputs = []
+    for which in linkage.inputs:
+        given = {key: getattr(which, key) for key in ("link", "joint", "relative_to")}
+        changes: dict[str, Any] = {key: new(name) for key, name in given.items() if name}
+        inputs.append(replace(which, **changes))
+    parts: dict[str, Any] = {
+        t: tuple(p.find_spelling(new) for p in getattr(linkage, t)) for t in PARTS
+    }
     found = replace(
         linkage,
         points=keys(linkage.points),
@@ -197,7 +201,10 @@ def renamed(mechanism: lw.Mechanism, rng: Rng) -> tuple[lw.Mechanism, dict[str, 
         angles=keys(linkage.angles),
         trace=tuple(map(new, linkage.trace)),
         inputs=tuple(inputs),
-        **{t: tuple(p.find_spelling(new) for p in getattr(linkage, t)) for t in PARTS},
+        masses=keys(linkage.masses),
+        friction=keys(linkage.friction),
+        clearances=keys(linkage.clearances),
+        **parts,
     )
     return lw.Mechanism(found), names
 
@@ -227,6 +234,9 @@ def in_radians_and_inches(mechanism: lw.Mechanism) -> lw.Mechanism:
         else replace(which, **{k: angle(getattr(which, k)) for k in ("start", "stop", "step")})
         for which in found.inputs
     ]
+    parts: dict[str, Any] = {
+        t: tuple(map(changed, getattr(found, t))) for t in PARTS if t != "loads"
+    }
     return lw.Mechanism(
         replace(
             found,
@@ -234,7 +244,7 @@ def in_radians_and_inches(mechanism: lw.Mechanism) -> lw.Mechanism:
             angle=AngleUnit.RADIAN,
             angles={key: angle(number) for key, number in found.angles.items()},
             inputs=tuple(inputs),
-            **{t: tuple(map(changed, getattr(found, t))) for t in PARTS if t != "loads"},
+            **parts,
         )
     )
 

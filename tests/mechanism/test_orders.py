@@ -11,9 +11,11 @@ import pytest
 
 import linkwork as lw
 from linkwork.cli.check import check_lines
-from linkwork.mechanism.link_dimension import Distance, VertexAngle
+from linkwork.mechanism.link_dimension import Distance, Given, VertexAngle
 from linkwork.mechanism.link_shape import LinkShape, place
+from linkwork.mechanism.linkage import Linkage
 from tests.campaigns.orders import partly_dimensioned, permuted, renamed
+from tests.described import described_as
 from tests.laws.contacts import contact
 
 # least squares and placing round differently in another order; conditions here are below 1e3
@@ -50,7 +52,8 @@ def test_that_shape_is_the_nearest_to_the_sketch(turn: float) -> None:
     # 46.2 degrees in the sketch
     angle = VertexAngle("Q", "A", "P", turn * math.radians(45))
     shape = place(tuple(SKETCH), sketch, given, [angle])
-    assert all(row.agrees(shape.local, 1e-12) for row in (*given, angle))
+    rows: list[Given] = [*given, angle]
+    assert all(row.agrees(shape.local, 1e-12) for row in rows)
 
     def distance(z: dict[str, complex]) -> float:
         """The root of the sum of squares after the best translation and rotation."""
@@ -115,7 +118,7 @@ def test_the_shape_nearest_to_the_sketch_follows_its_lengths() -> None:
     """A sensitivity and a family, against whole computations with other lengths."""
     bar, h = _bar(), 1e-3
     lengths = np.array([71.8 - h, 71.8, 71.8 + h])
-    given = bar.description.lengths
+    given = described_as(Linkage, bar).lengths
     alone = [bar.changed(lengths={**given, "A P": x}) for x in lengths.tolist()]
     values = np.array([m.solve(at=70)["Q.x"] for m in alone])
     slope = bar.sensitivity("Q.x", at=70, by=["A P"])["A P"]
@@ -133,7 +136,7 @@ LINKS = ("ground", "arm", "rod", "beam", "planet", "sun")
 def test_a_wheel_welded_to_a_rod_is_in_mesh_as_the_rod_is_sketched(order: tuple[str, ...]) -> None:
     """87.7 degrees apart before, where the wheel came before the rod."""
     mechanism = lw.example("sun-and-planet")
-    links = mechanism.description.links
+    links = described_as(Linkage, mechanism).links
     other = mechanism.changed(links={name: links[name] for name in order})
     assert other.solve(at=90)["sun"] == pytest.approx(-0.335919, abs=1e-6)
 
@@ -170,14 +173,14 @@ def test_whichever_points_of_a_link_come_first_it_is_assembled_alike(
 ) -> None:
     """A rough sketch: the link's direction there is that of all its points."""
     bar = _bar()
-    moved = {**bar.description.points, "A": (10, 40), "P": (75, 60)}
+    moved = {**described_as(Linkage, bar).points, "A": (10, 40), "P": (75, 60)}
     others = [p for p in SKETCH if p not in first]
-    links = {**bar.description.links, "b": (*first, *others)}
+    links = {**described_as(Linkage, bar).links, "b": (*first, *others)}
     start = bar.changed(points=moved).loop_equations.start
     other = bar.changed(points=moved, links=links).loop_equations
     turn = np.exp(1j * other.start[0]), np.exp(1j * start[0])
     shapes = [
-        m.description.shapes.local["b"]
+        described_as(Linkage, m).shapes.local["b"]
         for m in (bar.changed(points=moved), bar.changed(points=moved, links=links))
     ]
     ways = [(s["Q"] - s["A"]) * t for s, t in zip(shapes, turn[::-1], strict=True)]
@@ -201,7 +204,9 @@ def test_check_lists_what_parts_take_from_the_sketch() -> None:
     report = lw.example("sun-and-planet").check()
     rod = math.degrees(math.atan2(500, 20))
     # equal wheels: both turn alike against the arm, which is upright
-    assert report.measured_in_parts == (("mesh", "phase", pytest.approx(rod - 180), "deg"),)
+    ((part, quantity, phase, unit),) = report.measured_in_parts
+    assert (part, quantity, unit) == ("mesh", "phase", "deg")
+    assert phase == pytest.approx(rod - 180)
     assert [*report.to_dict()["measured_in_parts"][0]] == ["part", "quantity", "value", "unit"]
     text = "\n".join(check_lines(report, "mm"))
     assert text.endswith(
@@ -221,7 +226,7 @@ def test_check_lists_what_parts_take_from_the_sketch() -> None:
     }
     for kind, wanted in kinds.items():
         found = contact(kind, 1).check().measured_in_parts
-        assert [(part, quantity, unit) for part, quantity, _, unit in found] == wanted
+        assert [(name, what, units) for name, what, _, units in found] == wanted
 
 
 @pytest.mark.parametrize("kind", ["gear on a moving arm", "non-circular gears by a table"])

@@ -241,16 +241,24 @@ class _Orientation:
     def sketched_angles(self, angles: Mapping[str, LinkAngle]) -> dict[str, float]:
         """The variables of all groups in the sketch [rad], by name.
 
-        That of a driven link is its direction, every other one the mean of all links in its group.
-        Wheels of one point only count in groups without other links.
+        That of a driven link is its direction, every other one fits the links of its group best:
+        those that are drawn between most joints with other groups, at most two, since a flag that
+        is welded on may be drawn anywhere. Wheels of one point only count without other links.
         """
         found: dict[str, float] = {}
+        carriers = self.linkage.carriers()
         for name, members in self._groups(angles).items():
-            drawn = [body for body in members if len(self.linkage.links[body]) > 1] or members
+            joints: dict[int, list[str]] = {}
+            for body in members if len(members) > 1 else ():
+                points = self.linkage.links[body]
+                joined = [p for p in points if not {*members}.issuperset(carriers[p])]
+                joints.setdefault(min(len(joined), 2) if len(points) > 1 else -1, []).append(body)
+            drawn = joints[max(joints)] if joints else members
             if name in drawn and (name in self._driven or len(drawn) == 1):
-                drawn = [name]
-            ways = [self.linkage.sketched_angle(b) - angles[b].constant for b in drawn]
-            found[name] = ways[0] if drawn == [name] else phase(sum(map(cis, ways)))
+                found[name] = self.linkage.sketched_angle(name)
+                continue
+            spans = (self.linkage.sketched_span(b) * cis(-angles[b].constant) for b in drawn)
+            found[name] = phase(sum(spans))
         return found
 
     def _groups(self, angles: Mapping[str, LinkAngle]) -> dict[str, list[str]]:

@@ -148,7 +148,7 @@ class Draft(JoinedBodies):
     def _sketched_shapes(self) -> Iterator[tuple[str, Mapping[str, complex]]]:
         for link, points in self.links.items():
             origin = 0j if link == GROUND else self.sketched(points[0])
-            span = 1.0 if link == GROUND else self.sketched(points[: 2][-1]) - origin
+            span = 1.0 if link == GROUND else self.sketched(points[:2][-1]) - origin
             turn = cmath.exp(-1j * phase(span))
             yield link, {point: (self.sketched(point) - origin) * turn for point in points}
 
