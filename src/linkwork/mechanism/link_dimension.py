@@ -9,7 +9,19 @@ from dataclasses import dataclass, replace
 from linkwork.foundation.elementwise import cis, degrees, detached, is_steady, phase
 from linkwork.foundation.lanes import Rest
 
-__all__ = ["Distance", "Given", "VertexAngle"]
+__all__ = ["AGREE", "Distance", "Given", "ShapeError", "VertexAngle"]
+
+AGREE = 1e-9  # relative, or [rad]: disagreement of redundant dimensions
+
+
+class ShapeError(Exception):
+    """Dimensions of one link that contradict each other."""
+
+    def __init__(self, message: str, table: str = "", key: str = "") -> None:
+        super().__init__(message)
+        self.message = message
+        self.table = table
+        self.key = key
 
 
 @dataclass(frozen=True)
