@@ -13,7 +13,7 @@ from linkwork.batch import building
 from linkwork.batch.designs import designs_of
 from linkwork.foundation.arrays import Array
 from linkwork.foundation.errors import InputError, MechanismError, UnknownNameError
-from linkwork.mechanism import link_shape
+from linkwork.mechanism import nearest_shape
 from linkwork.mechanism.varied_number import VariedNumber, varied_numbers
 from tests.batch.single_design import agree
 from tests.thinned import thinned
@@ -344,7 +344,7 @@ def test_shapes_that_do_not_converge_stop_no_others() -> None:
 
 
 def test_shapes_that_go_on_by_themselves_are_the_same(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(link_shape._gauss_newton, "__defaults__", (1,))
+    monkeypatch.setattr(nearest_shape._gauss_newton, "__defaults__", (1,))
     mechanism, rng = lw.example("watt-linkage"), np.random.default_rng(6)
     chosen = [q for q in varied_numbers(mechanism.description) if q.table == "lengths"]
     agree(designs_of(mechanism, _varied(mechanism, chosen, 0.1, rng, 20)), 1e-13)

@@ -35,6 +35,7 @@ from tests.campaigns.links import link_campaign
 from tests.campaigns.monkey import monkey_campaign
 from tests.campaigns.motion import sweep_campaign
 from tests.campaigns.nine_points import nine_point_campaign
+from tests.campaigns.orders import order_campaign
 from tests.campaigns.poses import pose_campaign
 from tests.campaigns.positions import library_positions, random_position
 from tests.campaigns.precision_points import precision_campaign
@@ -57,6 +58,7 @@ _OWN_PART = {
     "improve": 1,
     "library-defects": 1,
     "nine-points": 1,
+    "orders": 20,
     "parallel-trains": 1,
     "poses": 1000,
     "precision-points": 4,
@@ -135,6 +137,10 @@ def _imports(part: int) -> tuple[Counter[str], list[str]]:
     return import_campaign(part, _PART)
 
 
+def _orders(part: int) -> tuple[Counter[str], list[str]]:
+    return order_campaign(part, _OWN_PART["orders"])
+
+
 def _precision_points(part: int) -> tuple[Counter[str], list[str]]:
     return precision_campaign(part, _OWN_PART["precision-points"])
 
@@ -176,6 +182,7 @@ CAMPAIGNS: dict[str, tuple[Callable[[int], tuple[Counter[str], list[str]]], int]
     "imports": (_imports, 80_000),
     "forces": (_forces, 2_000),
     "switching-motions": (_switching, 2_000),
+    "orders": (_orders, 2_000),
     "precision-points": (_precision_points, 200),
     "nine-points": (nine_point_campaign, 100),
     "poses": (_poses, 100_000),

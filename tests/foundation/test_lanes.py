@@ -18,7 +18,7 @@ from linkwork.foundation.angles import AngleUnit
 from linkwork.foundation.errors import ExpressionError
 from linkwork.foundation.lanes import LaneArithmetic, rest_of
 from linkwork.foundation.operand import NotElementwise
-from linkwork.mechanism.least_norm import full_rank, least_norm
+from linkwork.mechanism.least_norm import independent, least_norm
 
 RNG = np.random.default_rng(9)
 REAL = np.concatenate([RNG.normal(0, 3, 12), [0.0, -1.0, math.pi, -math.pi, 3 * math.pi, 7.5]])
@@ -161,5 +161,9 @@ def test_least_norm_solutions_in_lanes_are_those_of_each_lane() -> None:
     for k in range(6):
         alone = least_norm(matrices[k].tolist(), right[k].tolist())
         np.testing.assert_allclose([x.values[k] for x in found], alone, rtol=1e-12, atol=1e-13)
-    assert full_rank(rows, 1e-9)
-    assert consensus.agreeing.tolist() == [True, True, False, True, True, True]
+
+
+def test_rows_that_depend_on_those_before_are_left_out() -> None:
+    first, second, other = RNG.normal(size=(3, 5))
+    rows = np.array([first, 1e-3 * second, first - 2.0 * second, other, second + other])
+    assert independent(rows.tolist()) == [0, 1, 3]

@@ -18,7 +18,7 @@ from linkwork.cli.terminal import (
 )
 from linkwork.cli.text_table import table_lines
 from linkwork.results.check import CheckReport
-from linkwork.results.listing.check_listing import check_fields
+from linkwork.results.listing.check_listing import check_fields, measured_part_columns
 from linkwork.results.listing.column import Column
 from linkwork.results.listing.number_text import lengths, short, significant
 
@@ -62,6 +62,9 @@ def check_lines(report: CheckReport, length: str) -> list[str]:
                 Column(header=f"length [{length}]", cells=lengths(values), align="point"),
             ]
         )
+    if report.measured_in_parts:
+        lines += ["", "Measured between [points] for parts, because the file does not give it"]
+        lines += table_lines(measured_part_columns(report))
     return lines
 
 

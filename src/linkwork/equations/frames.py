@@ -9,10 +9,10 @@ line.
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
 
-from linkwork.equations.model import LinkAngle, Redundant, Term
+from linkwork.equations.model import LinkAngle, MeasuredInPart, Redundant, Term
 from linkwork.expression.grammar import parse
 from linkwork.expression.tree import Name, Node
 from linkwork.foundation.elementwise import (
@@ -56,6 +56,7 @@ class Frames:
     start: dict[str, float] = field(default_factory=dict)
     symbols: dict[str, float] = field(default_factory=dict)
     released: list[Redundant] = field(default_factory=list)
+    measured: list[MeasuredInPart] = field(default_factory=list)
 
     @classmethod
     def of(cls, linkage: Linkage, problems: Problems) -> Frames:
@@ -63,11 +64,13 @@ class Frames:
         frames = cls(linkage)
         frames.bodies = [GROUND, *[b for b in linkage.links if b != GROUND]]
         groups = _Orientation(linkage, problems)
+        for _, part in linkage.keyed_parts:
+            if (angle := part.measured_angle(linkage)) is not None:
+                frames.measured.append(MeasuredInPart(part.label, "angle", angle, "angle"))
         for body in frames.bodies:
             frames.angle[body] = groups.angle_of(body)
+        frames.start = groups.sketched_angles(frames.angle)
         for body in frames.bodies:
-            if frames.angle[body].variable == body:
-                frames.start[body] = linkage.sketched_angle(body)
             local = linkage.shapes.local[body]
             frames.places[body] = {p: Place(z, base=p) for p, z in local.items()}
         return frames
@@ -195,7 +198,7 @@ class _Orientation:
                     f'"{kept[0]}" cannot keep its angle relative to "{kept[1]}": '
                     f"other {part.holders} change it by {degrees(gap):.6g}°",
                 )
-        driven = {w.link for w in linkage.inputs if w.link}
+        driven = self._driven = {w.link for w in linkage.inputs if w.link}
         self._name: dict[str, str] = {}
         for body in linkage.links:
             root = self.root(body)
@@ -234,6 +237,37 @@ class _Orientation:
         # θ_a = θ_link - offset_a and θ_b = θ_on - offset_b
         self._parent[a] = (b, constant + offset_b - offset_a)
         return 0.0
+
+    def sketched_angles(self, angles: Mapping[str, LinkAngle]) -> dict[str, float]:
+        """The variables of all groups in the sketch [rad], by name.
+
+        That of a driven link is its direction, every other one fits the links of its group best:
+        those that are drawn between most joints with other groups, at most two, since a flag that
+        is welded on may be drawn anywhere. Wheels of one point only count without other links.
+        """
+        found: dict[str, float] = {}
+        carriers = self.linkage.carriers()
+        for name, members in self._groups(angles).items():
+            joints: dict[int, list[str]] = {}
+            for body in members if len(members) > 1 else ():
+                points = self.linkage.links[body]
+                joined = [p for p in points if not {*members}.issuperset(carriers[p])]
+                joints.setdefault(min(len(joined), 2) if len(points) > 1 else -1, []).append(body)
+            drawn = joints[max(joints)] if joints else members
+            if name in drawn and (name in self._driven or len(drawn) == 1):
+                found[name] = self.linkage.sketched_angle(name)
+                continue
+            spans = (self.linkage.sketched_span(b) * cis(-angles[b].constant) for b in drawn)
+            found[name] = phase(sum(spans))
+        return found
+
+    def _groups(self, angles: Mapping[str, LinkAngle]) -> dict[str, list[str]]:
+        """The links of every variable."""
+        found: dict[str, list[str]] = {}
+        for body, angle in angles.items():
+            if angle.variable is not None:
+                found.setdefault(angle.variable, []).append(body)
+        return found
 
     def angle_of(self, body: str) -> LinkAngle:
         """The body's angle: its group's variable plus a constant; zero for ground."""

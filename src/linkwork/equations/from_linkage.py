@@ -104,6 +104,7 @@ class _LoopWriter:
             redundant=tuple(frames.released),
             surplus=self.surplus,
             outlines=contacts.outlines,
+            measured=(*frames.measured, *contacts.measured),
             symbols=dict(frames.symbols),
             dimensions=dict(linkage.numbers.known),
             start=row_of(self.start[v.name] for v in variables),

@@ -22,6 +22,7 @@ __all__ = [
     "LinkAngle",
     "LoopEquation",
     "LoopEquations",
+    "MeasuredInPart",
     "Output",
     "PointPath",
     "RealEquation",
@@ -166,6 +167,19 @@ class LinkAngle:
     constant: float
 
 
+@dataclass(frozen=True)
+class MeasuredInPart:
+    """A number of a part that is not given and follows from the sketch [rad] or [length].
+
+    ``kind``: angle or length.
+    """
+
+    part: str
+    quantity: str
+    value: float
+    kind: str
+
+
 @dataclass(frozen=True, kw_only=True)
 class Redundant:
     """A redundant condition: a link's length is an unknown and must equal its given value.
@@ -212,6 +226,8 @@ class LoopEquations:
         Conditions that the others must imply, if there are too many (``surplus``).
     outlines : Mapping[str, (body, point, (K,) complex)]
         Cams and curves by name: points about a point of a body, in that body's frame.
+    measured : tuple of MeasuredInPart
+        What the sketch gives of parts.
     fixed : tuple of str
         Points on ground.
     length_scale : float
@@ -235,6 +251,7 @@ class LoopEquations:
     redundant: tuple[Redundant, ...] = ()
     surplus: Problem | None = None
     outlines: Mapping[str, tuple[str, str, ComplexArray]] = FrozenDict()
+    measured: tuple[MeasuredInPart, ...] = ()
     fixed: tuple[str, ...] = ()
     length_scale: float = 1.0
 

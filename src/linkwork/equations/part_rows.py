@@ -6,7 +6,7 @@ import cmath
 from dataclasses import dataclass, field
 
 from linkwork.equations.frames import Frames, Place
-from linkwork.equations.model import LawEquation, LinearEquation, LoopEquation
+from linkwork.equations.model import LawEquation, LinearEquation, LoopEquation, MeasuredInPart
 from linkwork.foundation.arrays import ComplexArray
 from linkwork.foundation.elementwise import copysign, largest, uniform_value
 from linkwork.foundation.names import canonical
@@ -30,6 +30,7 @@ class PartRows:
     laws: list[LawEquation] = field(default_factory=list)
     variables: list[tuple[str, str]] = field(default_factory=list)
     outlines: dict[str, tuple[str, str, ComplexArray]] = field(default_factory=dict)
+    measured: list[MeasuredInPart] = field(default_factory=list)
 
     def held(self, link: str, frame: str, key: Key) -> None:
         """Report a fixed angle."""
@@ -63,8 +64,12 @@ class PartRows:
         turns: list[tuple[str, float]],
         length: tuple[str, float] | None = None,
         total: float | None = None,
+        measured: tuple[str, float] = ("", 1.0),
     ) -> None:
-        """Add Σ weight · angle of body (+ weight · length) = total, by default as sketched."""
+        """Add Σ weight · angle of body (+ weight · length) = total, by default as sketched.
+
+        ``measured``: the name of what the sketch then gives, and its weight in the total.
+        """
         frames = self.frames
         weights, constant = frames.angles_of(
             (body, uniform_value(weight)) for body, weight in turns
@@ -74,13 +79,17 @@ class PartRows:
             weights[length[0]] = length[1]
             now += length[1] * frames.start[length[0]]
         # by default the total of the sketch: gears can mesh at any tooth
+        kind = "angle" if length is None else "length"
+        if total is None:
+            quantity, weight = measured
+            self.measured.append(MeasuredInPart(label, quantity, (now + constant) / weight, kind))
         constant = -now if total is None else constant - total
         self.linear.append(
             LinearEquation(
                 label=label,
                 terms=tuple((canonical(name), weight) for name, weight in weights.items()),
                 constant=constant,
-                kind="angle" if length is None else "length",
+                kind=kind,
             )
         )
 

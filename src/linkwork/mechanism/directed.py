@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+import cmath
+from collections.abc import Iterator, Mapping
 from dataclasses import replace
 
 from linkwork.foundation.names import GROUND, canonical, free_name
@@ -13,11 +14,15 @@ from linkwork.mechanism.part.slider import Slider
 __all__ = ["directed", "named_in"]
 
 
-def directed(linkage: Linkage) -> Linkage:
+def directed(linkage: Linkage, angles: Mapping[str, float]) -> Linkage:
     """The linkage with a mark on every wheel, cam and ground of one point.
 
-    A mark is a second point. In the sketch it lies from the first one in the direction of the x
-    axis, from which the angle of a one-point link is measured, so no angle changes.
+    A mark is a second point, in the direction of the link's angle, so that no angle changes.
+
+    Parameters
+    ----------
+    angles : Mapping[str, float]
+        The angles of links in the sketch [rad]; that of ground is zero.
     """
     blocks = {slider.link for slider in linkage.of(Slider)}
     bare = [
@@ -34,7 +39,7 @@ def directed(linkage: Linkage) -> Linkage:
         (center,) = linkage.links[link]
         mark, size = free_name(f"{link}_mark", taken), _size(linkage, link)
         x, y = linkage.points[center]
-        points[mark] = (_sum(x, size), y)
+        points[mark] = _beside((x, y), cmath.rect(size, angles.get(link, 0.0)))
         links[link] = (center, mark)
         if link != GROUND:
             lengths[f"{center} {mark}"] = size
@@ -54,7 +59,15 @@ def _size(linkage: Linkage, link: str) -> float:
     )
 
 
+def _beside(place: tuple[Number, ...], span: complex) -> tuple[Number, ...]:
+    """The coordinates of a point that is away from another one."""
+    x, y = place
+    return _sum(x, span.real), _sum(y, span.imag)
+
+
 def _sum(x: Number, size: float) -> Number:
+    if not size:
+        return x
     return f"({x}) + ({size!r})" if isinstance(x, str) else x + size
 
 

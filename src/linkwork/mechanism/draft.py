@@ -9,6 +9,7 @@ from functools import cached_property
 from itertools import pairwise
 from typing import Any, Self
 
+from linkwork.foundation.elementwise import phase
 from linkwork.foundation.errors import ExpressionError
 from linkwork.foundation.frozen import FrozenDict
 from linkwork.foundation.names import GROUND, canonical
@@ -147,7 +148,8 @@ class Draft(JoinedBodies):
     def _sketched_shapes(self) -> Iterator[tuple[str, Mapping[str, complex]]]:
         for link, points in self.links.items():
             origin = 0j if link == GROUND else self.sketched(points[0])
-            turn = cmath.exp(-1j * self.sketched_angle(link))
+            span = 1.0 if link == GROUND else self.sketched(points[:2][-1]) - origin
+            turn = cmath.exp(-1j * phase(span))
             yield link, {point: (self.sketched(point) - origin) * turn for point in points}
 
     def _lacks(self, key: Key) -> bool:

@@ -271,12 +271,13 @@ def _formulas(linkage: Linkage, *points: str) -> bool:
 
 def _distance(linkage: Linkage, a: str, b: str, *, measured: float | None = None) -> Number:
     """The distance of two points; a formula if their coordinates are formulas."""
-    if _formulas(linkage, a, b):
+    drawn = abs(linkage.sketched(b) - linkage.sketched(a))
+    # a shape that is only nearest to its sketch has other distances
+    as_drawn = measured is None or abs(measured - drawn) <= 4e-16 * drawn
+    if as_drawn and _formulas(linkage, a, b):
         (ax, ay), (bx, by) = _texts(linkage, a, b)
         return f"hypot({bx} - {ax}, {by} - {ay})"
-    if measured is not None:
-        return measured
-    return abs(linkage.sketched(b) - linkage.sketched(a))
+    return drawn if measured is None else measured
 
 
 def _angle(linkage: Linkage, a: str, vertex: str, b: str) -> Number:

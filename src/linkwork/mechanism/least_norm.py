@@ -9,9 +9,10 @@ import numpy as np
 from linkwork.foundation.arrays import AnyArray, Array, BoolArray
 from linkwork.foundation.lanes import Lanes, is_batched
 
-__all__ = ["full_rank", "least_norm"]
+__all__ = ["independent", "least_norm"]
 
 _CUT = 1e-12  # relative: smaller singular values count as zero
+_APART = 1e-9  # relative: a row nearer to those before depends on them
 _REGULAR = 1e-8  # the determinant of the Gram matrix of rows of length 1
 
 
@@ -53,19 +54,17 @@ def least_norm(matrix: Sequence[Sequence[float]], right: Sequence[float]) -> Seq
     return [lanes.arithmetic.lanes(column) for column in x.T]
 
 
-def full_rank(matrix: Sequence[Sequence[float]], tolerance: float) -> bool:
-    """Whether m rows are independent: all singular values exceed a tolerance."""
-    lanes = _lanes_in(matrix, ())
-    if lanes is None:
-        return bool(np.linalg.matrix_rank(np.array(matrix), tolerance) == len(matrix))
-    a = _stacked(matrix, lanes)
-    regular, _, sizes = _regular(a)
-    # lower bound of the singular values: shortest row * sqrt(determinant / m^(m-1))
-    least = sizes.min(axis=1) * np.sqrt(_REGULAR / len(matrix) ** (len(matrix) - 1))
-    full = regular & (least > tolerance)
-    others = np.flatnonzero(~full & np.isfinite(a).all((1, 2)))
-    full[others] = np.linalg.matrix_rank(a[others], tolerance) == len(matrix)
-    return lanes.arithmetic.decide(full)
+def independent(matrix: Sequence[Sequence[float]]) -> list[int]:
+    """The rows, from the first on, that do not depend on those before."""
+    found: list[int] = []
+    base = np.empty((0, len(matrix[0])))
+    for k, row in enumerate(np.array(matrix)):
+        rest = row - base.T @ (base @ row)
+        rest -= base.T @ (base @ rest)  # once more, against rounding
+        if (size := np.linalg.norm(rest)) > _APART * np.linalg.norm(row):
+            found.append(k)
+            base = np.vstack([base, rest / size])
+    return found
 
 
 def _lanes_in(matrix: Sequence[Sequence[float]], right: Sequence[float]) -> Lanes | None:

@@ -9,7 +9,19 @@ from dataclasses import dataclass, replace
 from linkwork.foundation.elementwise import cis, degrees, detached, is_steady, phase
 from linkwork.foundation.lanes import Rest
 
-__all__ = ["Distance", "Given", "VertexAngle"]
+__all__ = ["AGREE", "Distance", "Given", "ShapeError", "VertexAngle"]
+
+AGREE = 1e-9  # relative, or [rad]: disagreement of redundant dimensions
+
+
+class ShapeError(Exception):
+    """Dimensions of one link that contradict each other."""
+
+    def __init__(self, message: str, table: str = "", key: str = "") -> None:
+        super().__init__(message)
+        self.message = message
+        self.table = table
+        self.key = key
 
 
 @dataclass(frozen=True)
@@ -50,6 +62,14 @@ class Distance:
         span = z[self.b] - z[self.a]
         size = abs(span)
         slope = span / (size * self.length) if size else 0j
+        return {self.a: -slope, self.b: slope}
+
+    def bend(self, z: Mapping[str, complex], point: str, move: complex) -> dict[str, complex]:
+        """The change of the gradients per move of a point."""
+        span = z[self.b] - z[self.a]
+        change = move if point == self.b else -move
+        # i u Im(u* δ) / (|span| · length), u = span / |span|
+        slope = 1j * span * (span.conjugate() * change).imag / (abs(span) ** 3 * self.length)
         return {self.a: -slope, self.b: slope}
 
     def narrow(self, rest: Rest) -> Distance:
@@ -104,6 +124,16 @@ class VertexAngle:
             return {point: complex(math.nan) for point in self.points}
         # d arg r = Im(dr / r)
         to_a, to_b = -1j / first.conjugate(), 1j / second.conjugate()
+        return {self.a: to_a, self.vertex: -(to_a + to_b), self.b: to_b}
+
+    def bend(self, z: Mapping[str, complex], point: str, move: complex) -> dict[str, complex]:
+        """The change of the gradients per move of a point."""
+        first, second = z[self.a] - z[self.vertex], z[self.b] - z[self.vertex]
+        turns = [
+            -move if point == self.vertex else move * (point == end) for end in (self.a, self.b)
+        ]
+        to_a = 1j * turns[0].conjugate() / first.conjugate() ** 2
+        to_b = -1j * turns[1].conjugate() / second.conjugate() ** 2
         return {self.a: to_a, self.vertex: -(to_a + to_b), self.b: to_b}
 
     def narrow(self, rest: Rest) -> VertexAngle:

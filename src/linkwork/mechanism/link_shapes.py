@@ -1,7 +1,7 @@
 """The exact shape of every link from its lengths and angles; the sketch selects sides.
 
 A link of n points has 2n - 3 dimensions. Those not given are measured between the sketched points
-and reported; more than 2n - 3 must agree.
+and reported, or follow from the shape nearest to the sketch; more than 2n - 3 must agree.
 """
 
 from __future__ import annotations
@@ -12,12 +12,10 @@ from linkwork.foundation.lanes import is_batched
 from linkwork.foundation.names import GROUND
 from linkwork.mechanism.bodies import Bodies, Measured, Shapes
 from linkwork.mechanism.description import Problems
-from linkwork.mechanism.link_dimension import Distance, VertexAngle
-from linkwork.mechanism.link_shape import LinkShape, ShapeError, place
+from linkwork.mechanism.link_dimension import AGREE, Distance, ShapeError, VertexAngle
+from linkwork.mechanism.link_shape import LinkShape, place
 
 __all__ = ["link_shapes"]
-
-_AGREE = 1e-9  # relative tolerance of redundant dimensions
 
 
 def link_shapes(linkage: Bodies, problems: Problems) -> Shapes:
@@ -88,7 +86,7 @@ def _check_ground(
                 raise _same_point(*sorted((other, point), key=list(sketch).index))
     dimensions: list[Distance | VertexAngle] = [*distances, *vertices]
     for given in dimensions:
-        if not given.agrees(sketch, _AGREE):
+        if not given.agrees(sketch, AGREE):
             raise ShapeError(
                 f"ground coordinates are exact and give {given.shown(sketch)}, "
                 f"not {given.amount_text}: change [points] or leave this out",

@@ -68,6 +68,7 @@ def check(model: Model) -> CheckReport:
         mobility_why=mobility.why,
         redundant=() if not start.status.ok else tuple(_redundant(model, start.v)),
         measured=measured,
+        measured_in_parts=tuple(_measured_in_parts(model)),
         start=start.status,
         start_message=start.message,
         start_input={
@@ -79,6 +80,14 @@ def check(model: Model) -> CheckReport:
         classification=None if isinstance(seen, NotSeen) else classify(seen),
         unclassified=seen.why if isinstance(seen, NotSeen) else "",
     )
+
+
+def _measured_in_parts(model: Model) -> Iterator[tuple[str, str, float, str]]:
+    """Part, quantity, value and unit of what parts take from the sketch."""
+    for entry in model.equations.measured:
+        kind = Kind(entry.kind)
+        value = entry.value / model.units.scale(kind)
+        yield entry.part, entry.quantity, value, model.units.of(kind)
 
 
 def _redundant(model: Model, v: Array) -> Iterator[tuple[str, float, float]]:

@@ -63,7 +63,9 @@ class CheckReport:
     mobility_rank : int or None
         Variables minus the rank of the full Jacobian at the start position; ``None`` without one.
     measured : tuple of (link, "A B", length)
-        Dimensions that were measured between sketched points [file's length unit].
+        Dimensions that are not given and follow from the sketched points [file's length unit].
+    measured_in_parts : tuple of (part, quantity, value, unit)
+        Numbers of parts that are not given and follow from the sketch, such as a phase of gears.
     start : Status
         How Newton-Raphson ended at the input value of the guess.
     start_message : str
@@ -115,6 +117,7 @@ class CheckReport:
     redundant: tuple[tuple[str, float, float], ...] = ()
     classification: Classification | None = None
     unclassified: str = ""
+    measured_in_parts: tuple[tuple[str, str, float, str], ...] = ()
 
     def to_dict(self) -> dict[str, Any]:
         """The report as JSON-ready data."""
@@ -141,6 +144,10 @@ class CheckReport:
                 {"link": link, "length": length, "gap": gap} for link, length, gap in self.redundant
             ],
             "measured": [{"link": k, "points": p, "length": v} for k, p, v in self.measured],
+            "measured_in_parts": [
+                {"part": part, "quantity": quantity, "value": value, "unit": unit}
+                for part, quantity, value, unit in self.measured_in_parts
+            ],
             "start": {
                 "status": self.start.name,
                 "message": self.start_message,

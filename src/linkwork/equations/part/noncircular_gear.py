@@ -8,7 +8,7 @@ from fractions import Fraction
 
 import numpy as np
 
-from linkwork.equations.model import LawEquation
+from linkwork.equations.model import LawEquation, MeasuredInPart
 from linkwork.equations.outline import Outline, spline
 from linkwork.equations.part_rows import PartRows
 from linkwork.expression.grammar import parse
@@ -60,13 +60,15 @@ def write(gear: NoncircularGear, key: Key, rows: PartRows) -> None:
     weights, held = frames.angles_of([(second, q), (first, -p), (gear.arm, p - q)])
     offset = at - linkage.numbers(gear.start) * radians
     law = rest.times(q)
+    begin = uniform_value(offset - at)  # argument of the law at angle 0 of the first wheel
     if gear.phase is not None:
-        begin = uniform_value(offset - at)  # argument of the law at angle 0 of the first wheel
         constant = held - q * linkage.numbers(gear.phase) * radians + _at(law, begin)
     else:
         angle = sum(weight * frames.start[name] for name, weight in inner.items()) + offset
         now = sum(weight * frames.start[name] for name, weight in weights.items())
         constant = _at(law, uniform_value(angle)) - now
+        value = (held + _at(law, begin) - constant) / q
+        rows.measured.append(MeasuredInPart(gear.name, "phase", value, "angle"))
     rows.laws.append(
         LawEquation(
             label=gear.name,

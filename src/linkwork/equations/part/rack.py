@@ -17,4 +17,9 @@ def write(rack: Rack, key: Key, rows: PartRows) -> None:
     side = rows.side(slider.on, slider.line, rack.center, (*key, "center"))
     r = side * linkage.numbers(rack.radius)
     turns = [(rack.pinion, -r), (slider.on, r)]
-    rows.tie(rack.name, turns, length=(rack.slider, 1.0))
+    rows.tie(
+        rack.name,
+        turns,
+        length=(rack.slider, 1.0),
+        measured=(f"{rack.slider} at {rack.pinion} = 0", 1.0),
+    )

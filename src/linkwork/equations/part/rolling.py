@@ -26,7 +26,8 @@ def _roll_on_line(rolling: Rolling, key: Key, rows: PartRows) -> None:
     name = f"{rolling.name}_radius"
     frames.add_guide((rolling.name, rolling.on, rolling.line), rolling.center, side * radius, name)
     turns = [(rolling.wheel, side * radius), (rolling.on, -side * radius)]
-    rows.tie(rolling.name, turns, length=(rolling.name, 1.0))
+    measured = (f"{rolling.name} at {rolling.wheel} = 0", 1.0)
+    rows.tie(rolling.name, turns, length=(rolling.name, 1.0), measured=measured)
 
 
 def _roll_on_circle(rolling: Rolling, rows: PartRows) -> None:
@@ -40,4 +41,5 @@ def _roll_on_circle(rolling: Rolling, rows: PartRows) -> None:
     frames.add_rod(rolling.name, (a, b), length)
     p, q = ratio(large, small)
     p = -p if rolling.inside else p
-    rows.tie(rolling.name, [(rolling.wheel, q), (rolling.on, p), (rolling.name, -p - q)])
+    turns = [(rolling.wheel, q), (rolling.on, p), (rolling.name, -p - q)]
+    rows.tie(rolling.name, turns, measured=(f"{rolling.wheel} at {rolling.name} = 0", q))

@@ -29,7 +29,8 @@ def write(pair: WheelPair, key: Key, rows: PartRows) -> None:
     if pair.phase is not None:
         phase = q * numbers(pair.phase) * rows.frames.linkage.angle.radians
     first, second = pair.wheels
-    rows.tie(pair.name, [(second, q), (first, p), (pair.arm, -p - q)], total=phase)
+    turns = [(second, q), (first, p), (pair.arm, -p - q)]
+    rows.tie(pair.name, turns, total=phase, measured=("phase", q))
 
 
 def ratio(first: float, second: float, *, whole: bool = False) -> tuple[float, float]:

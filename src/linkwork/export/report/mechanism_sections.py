@@ -28,7 +28,7 @@ from linkwork.foundation.elementwise import phase
 from linkwork.foundation.names import canonical, pretty
 from linkwork.mechanism.draft import Draft
 from linkwork.mechanism.varied_number import varied_numbers
-from linkwork.results.listing.check_listing import check_fields
+from linkwork.results.listing.check_listing import check_fields, measured_part_columns
 from linkwork.results.listing.column import Column
 from linkwork.results.listing.number_text import fixed, lengths, short
 from linkwork.results.listing.position_listing import (
@@ -148,6 +148,9 @@ def dimensions(found: Findings, template: Template) -> Iterator[Block]:
             Column(header=f"length [{description.length}]", cells=lengths(values), align="point"),
         ]
         yield from tables("Lengths measured in the sketch", columns)
+    if found.check.measured_in_parts:
+        columns = measured_part_columns(found.check)
+        yield from tables("Measured in the sketch for parts", columns)
     parts = part_lines(description)
     if parts:
         names, given = zip(*parts, strict=True)

@@ -133,6 +133,10 @@ class Part:
         """Two links whose relative angle is fixed, and this angle [rad]."""
         return None
 
+    def measured_angle(self, linkage: Bodies) -> float | None:
+        """Its fixed angle, if not given but measured in the sketch [rad]."""
+        return None
+
     @property
     def guided(self) -> tuple[str, str, str] | None:
         """The key of the guided point, the point, and the link with the line."""

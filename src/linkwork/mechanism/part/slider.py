@@ -125,11 +125,16 @@ class Slider(GuidePart):
             return line - own + choose(along, 0.0, math.pi)
         if self.angle is not None:
             return line + linkage.numbers(self.angle) * linkage.angle.radians
+        measured = self.measured_angle(linkage)
         # a one-point block has no direction: use that of the line
-        if self.link != GROUND and len(linkage.links[self.link]) < 2:
-            return line
-        a, b = (linkage.sketched(p) for p in self.line)
-        return line + linkage.sketched_angle(self.link) - phase(b - a)
+        return line if measured is None else line + measured
+
+    def measured_angle(self, linkage: Bodies) -> float | None:
+        directed = self.link == GROUND or len(linkage.links[self.link]) > 1
+        if len(self.points) == 2 or self.angle is not None or not directed:
+            return None
+        a, b = map(linkage.sketched, self.line)
+        return linkage.sketched_angle(self.link) - phase(b - a)
 
     def check(self, checks: PartChecks) -> None:
         links = checks.linkage.links

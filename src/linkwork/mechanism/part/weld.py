@@ -67,9 +67,14 @@ class Weld(Part):
 
     def kept_angle(self, linkage: Bodies) -> tuple[str, str, float]:
         first, second = self.links
-        if self.angle is not None:
-            return second, first, linkage.numbers(self.angle) * linkage.angle.radians
-        return second, first, linkage.sketched_angle(second) - linkage.sketched_angle(first)
+        angle = self.measured_angle(linkage)
+        if angle is None:
+            angle = linkage.numbers(self.angle or 0) * linkage.angle.radians
+        return second, first, angle
+
+    def measured_angle(self, linkage: Bodies) -> float | None:
+        first, second = map(linkage.sketched_angle, self.links)
+        return second - first if self.angle is None else None
 
     def pairs(self, linkage: Bodies) -> KinematicPairs:
         first, second = (linkage.links[link] for link in self.links)

@@ -41,7 +41,7 @@ def inversion(model: Model, link: str, which: Input | None = None) -> Linkage:
         )
     linkage = seen.linkage
     if as_name(link) != GROUND:
-        linkage = directed(linkage)
+        linkage = directed(linkage, _sketched_angles(seen.model))
     return inverted(linkage, link, _places(seen.model, linkage), which)
 
 
@@ -54,6 +54,16 @@ def _seen(model: Model) -> Seen:
             f"and joints: {seen.why}"
         )
     return seen
+
+
+def _sketched_angles(model: Model) -> dict[str, float]:
+    """The angles of all links in the sketch [rad]."""
+    equations = model.equations
+    start = {v.name: float(x) for v, x in zip(equations.variables, equations.start, strict=True)}
+    return {
+        link: angle.constant + (0.0 if angle.variable is None else start[angle.variable])
+        for link, angle in equations.links.items()
+    }
 
 
 def _places(model: Model, linkage: Linkage) -> dict[str, complex]:
@@ -71,7 +81,8 @@ def _places(model: Model, linkage: Linkage) -> dict[str, complex]:
 def inversions(model: Model) -> tuple[Inversion, ...]:
     """Every link as ground, the present one first, with the type of the inversion."""
     seen = _seen(model)
-    model, linkage = seen.model, directed(seen.linkage)
+    model = seen.model
+    linkage = directed(seen.linkage, _sketched_angles(model))
     chain = Chain.of(linkage)
     alike = {link: group[0] for group in orbits(chain.with_blocks()) for link in group}
     places = _places(model, linkage)

@@ -6,9 +6,11 @@ from collections.abc import Iterator
 
 from linkwork.results.check import BlockSummary, CheckReport
 from linkwork.results.classification import Classification, roman
+from linkwork.results.listing.column import Column
+from linkwork.results.listing.number_text import significant
 from linkwork.results.listing.position_listing import redundant_lines
 
-__all__ = ["check_fields", "classification_fields"]
+__all__ = ["check_fields", "classification_fields", "measured_part_columns"]
 
 
 def check_fields(report: CheckReport) -> Iterator[tuple[str, str]]:
@@ -37,6 +39,17 @@ def check_fields(report: CheckReport) -> Iterator[tuple[str, str]]:
         yield from classification_fields(report.classification)
     else:
         yield "chain", f"not known: {report.unclassified}"
+
+
+def measured_part_columns(report: CheckReport) -> list[Column]:
+    """What the sketch gives of parts: part, quantity and value."""
+    parts, quantities, values, units = zip(*report.measured_in_parts, strict=True)
+    cells = [significant(value, 7, noise=1e-9) for value in values]
+    return [
+        Column(header="part", cells=parts),
+        Column(header="quantity", cells=quantities),
+        Column(header="value", cells=cells, align="point", units=units),
+    ]
 
 
 def _blocks_sentence(report: CheckReport) -> str:
