@@ -262,3 +262,22 @@ def test_bodies_without_mass_and_of_micrometres_have_what_simulators_need() -> N
     assert all(own.mass >= 1e-14 and own.inertia >= 1e-14 for own in bodies)
     assert bodies[1].mass < 1e-3 * bodies[0].mass
     assert "A small mass instead of none, which simulators refuse: coupler." in robot.notes()
+
+
+def test_every_input_has_an_actuator_of_its_joint(tmp_path: Path) -> None:
+    robot = read_example("five-bar-robot")
+    texts = {}
+    for suffix in (".mjcf", ".sdf", ".urdf"):
+        robot.to_robot(tmp_path / f"robot{suffix}")
+        texts[suffix] = (tmp_path / f"robot{suffix}").read_text("utf-8")
+    motors = Tree.fromstring(texts[".mjcf"]).iterfind("actuator/motor")
+    assert [(own.get("name"), own.get("joint")) for own in motors] == [
+        ("input:left", "O1:left"), ("input:right", "O2:right"),
+    ]  # fmt: skip
+    assert "whose motors a model cannot give: O1:left, O2:right." in texts[".sdf"]
+    assert "in step with it as in the table: O2:right." in texts[".urdf"]
+    bar = coarse(read_example("four-bar"), 36).driven_by(link="coupler")
+    bar.to_robot(tmp_path / "bar.mjcf", at=20)
+    text = (tmp_path / "bar.mjcf").read_text("utf-8")
+    assert "Not driven, between bodies without a common joint: coupler." in text
+    assert "<motor" not in text
