@@ -16,6 +16,7 @@ from linkwork.design.improvement.front_designs import front_designs
 from linkwork.design.improvement.front_fit import fit_front
 from linkwork.design.improvement.goals import PathGoal
 from linkwork.design.improvement.improved_design import ImprovedDesign
+from linkwork.design.improvement.kept_relations import Together, kept_relations
 from linkwork.design.improvement.mechanism_fit import fit_numbers
 from linkwork.design.improvement.motion_bounds import least_in_rows
 from linkwork.design.improvement.proved_design import fitted_design, interrupted_design
@@ -118,10 +119,19 @@ def improved_designs(
         # starts that cannot be kept off, or are not led again, keep their designs
         again = {k for k, _ in led}
         designs = led + [own for own in designs if own not in known and own[0] not in again]
+    if not points and not search.interrupted and not any(map(_is_reached, designs)):
+        designs = search.related(others, designs, len(starts))
     if search.interrupted and not designs:
         raise KeyboardInterrupt
     found = [interrupted_design(own) if search.interrupted else own for _, own in designs]
     return tuple(sorted(found, key=partial(_rank, settings)))
+
+
+def _is_reached(found: tuple[int, ImprovedDesign]) -> bool:
+    """Whether a sound design has no miss that a person would see."""
+    _, design = found
+    sizes = [abs(float(x)) for x in design.numbers.values()]
+    return design.sound and design.largest <= _EQUAL_NUMBERS * max(sizes, default=1.0)
 
 
 def _locks(design: ImprovedDesign) -> bool:
@@ -151,6 +161,7 @@ class _Search:
     is_sound: Callable[[ImprovedDesign], bool]
     enough: int | None
     progress: Callable[[float], None] | None
+    together: Together | None = None
     begin: float = 0.0
     share: float = 1.0
     interrupted: bool = False
@@ -180,6 +191,7 @@ class _Search:
                 box=self.box,
                 path=path,
                 goals=goals,
+                together=self.together,
             )
             if settings.front:
                 found = fit_front(given, starts, settings.front, progress=told)
@@ -190,6 +202,32 @@ class _Search:
             if self.interrupted:
                 break
         return fits
+
+    def related(
+        self, goals: Sequence[Goal], known: list[tuple[int, ImprovedDesign]], count: int
+    ) -> list[tuple[int, ImprovedDesign]]:
+        """Known designs, and those whose numbers keep the relations of the mechanism.
+
+        ``count``: so many starts for each kind of relation.
+        """
+        own = self.numbers, self.box, self.together
+        motion = sweep(self.model, certify=False)
+        rng = np.random.default_rng(self.settings.seed)
+        for together in kept_relations(self.model, motion, self.numbers):
+            self.together, self.box = together, together.box(own[1])
+            spread = self.settings.spread * rng.uniform(-1.0, 1.0, (count, len(together.sizes)))
+            spread[0] = 0.0
+            starts = self.box.inside(together.sizes * (1.0 + spread))
+            try:
+                known = self.proved(self.fits(goals, starts), [-1] * count, known)
+            except MechanismError:  # a goal changes with none of these sizes
+                continue
+            except KeyboardInterrupt:
+                self.interrupted = True
+            if self.interrupted or any(map(_is_reached, known)):
+                break
+        _, self.box, self.together = own
+        return known
 
     def proved(
         self,
