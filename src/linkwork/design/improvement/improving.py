@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import partial
 
 import numpy as np
@@ -119,11 +119,15 @@ def improved_designs(
         # starts that cannot be kept off, or are not led again, keep their designs
         again = {k for k, _ in led}
         designs = led + [own for own in designs if own not in known and own[0] not in again]
-    if not points and not search.interrupted and not any(map(_is_reached, designs)):
+    # relations are what fits break that lose starts, lock or do not move
+    hampered = search.lost or any(
+        _locks(own) or search.moved((k, own)).unmoved for k, own in designs
+    )
+    if hampered and not points and not search.interrupted and not any(map(_is_reached, designs)):
         designs = search.related(others, designs, len(starts))
     if search.interrupted and not designs:
         raise KeyboardInterrupt
-    found = [interrupted_design(own) if search.interrupted else own for _, own in designs]
+    found = [interrupted_design(d[1]) if search.interrupted else search.moved(d) for d in designs]
     return tuple(sorted(found, key=partial(_rank, settings)))
 
 
@@ -165,6 +169,8 @@ class _Search:
     begin: float = 0.0
     share: float = 1.0
     interrupted: bool = False
+    begun: int = 0
+    lost: int = 0
 
     def tell(self, fraction: float) -> None:
         """A fraction of this search is done."""
@@ -198,6 +204,8 @@ class _Search:
             else:
                 found = fit_numbers(given, starts, minimax=settings.fit == "minimax", progress=told)
             fits.append((path, found))
+            self.begun += len(starts)
+            self.lost += len(starts) - int(np.isfinite(found.total).sum())
             self.interrupted |= found.interrupted
             if self.interrupted:
                 break
@@ -258,6 +266,21 @@ class _Search:
         except KeyboardInterrupt:
             self.interrupted = True
         return designs
+
+    def moved(self, found: tuple[int, ImprovedDesign]) -> ImprovedDesign:
+        """A design; the mechanism as it was is no improvement, unless it meets its goals."""
+        _, design = found
+        x = np.array([float(q.of(self.model.description)) for q in self.numbers])
+        if _is_reached((0, replace(design, sound=True))) or not _is_known(x, [design]):
+            return design
+        told = "nothing improved: the best numbers are those of the mechanism; "
+        if self.lost:
+            told += f"{self.lost} of {self.begun} starts have no position on its branch"
+        else:
+            told += "no small change of those that vary brings its goals nearer"
+        if design.goals:
+            told += f", which miss {', '.join(f'{n} by {m:.4g}' for n, m in design.goals.items())}"
+        return replace(design, sound=False, unmoved=told, message=f"{design.message}; {told}")
 
     def tell_proofs(self, fraction: float) -> None:
         """A fraction of the proofs is done; an interruption of the telling does not end them."""

@@ -79,6 +79,8 @@ def kept_relations(
     then all lengths in proportion.
     """
     x = np.array([float(q.of(model.description)) for q in numbers])
+    if len(x) < 2:
+        return
     scaled = _scaled(model, numbers, x)
     groups = list(_groups(model, numbers, x, scaled))
     free = [own for own in groups if _moves(model, motion, numbers, x + _TRIED * own)]
