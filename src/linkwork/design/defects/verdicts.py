@@ -51,8 +51,8 @@ class Verdicts:
     loops : DrivenLoops
     travel : Travel
     transmission : (D,)
-        A lower bound of the transmission angle over the driven range [rad], 0 where rounding decides
-        about a dead point; NaN where the range is not defined.
+        A lower bound of the transmission angle over the driven range [rad], 0 where rounding
+        decides about a dead point; NaN where the range is not defined.
     size : (D,)
         The longest link or distance of fixed pivots, of two guides also the longest arm [length].
     shortest : (D,)
