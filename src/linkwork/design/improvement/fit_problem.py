@@ -13,7 +13,7 @@ from linkwork.design.improvement.kept_relations import Together
 from linkwork.design.improvement.lane_work import LaneWork
 from linkwork.design.improvement.largest_miss import largest_misses, powered
 from linkwork.design.improvement.settings import Aid, Goal
-from linkwork.design.improvement.solved_lanes import SolvedLanes
+from linkwork.design.improvement.solved_lanes import SolvedLanes, inputs_away
 from linkwork.design.improvement.trade_off import Objectives, TradeOff, told_apart
 from linkwork.design.improvement.written_designs import DesignWriter
 from linkwork.foundation.angles import FULL_TURN
@@ -27,7 +27,7 @@ from linkwork.numerics.lane_least_squares import LaneFit, Residuals, minimise, s
 from linkwork.results.motion import Motion
 from linkwork.results.quantity import Kind
 
-__all__ = ["APPROACH", "FitProblem", "FittedNumbers", "Fitting", "inputs_away"]
+__all__ = ["APPROACH", "FitProblem", "FittedNumbers", "Fitting"]
 
 _GAP = 1e-7  # between inputs of positions in order [rad or length]
 APPROACH = 4  # parts of the way from the mechanism to a start
@@ -74,18 +74,6 @@ class FittedNumbers:
     beyond: Array
     start: IndexArray
     interrupted: bool
-
-
-def inputs_away(at: Array, motion: Motion, model: Model) -> Array:
-    """The distances of inputs (N,) from those of rows (R,), infinite from lost ones, (N, R)."""
-    lead = next(iter(motion.inputs))
-    table = np.asarray(motion.inputs[lead]) * float(model.input_scale[0])
-    away = np.abs(at[:, None] - table)
-    if model.equations.inputs[0].kind == Kind.ANGLE.value:
-        turned = np.abs(np.mod(away + 0.5 * FULL_TURN, FULL_TURN) - 0.5 * FULL_TURN)
-        # of rows whole turns apart the nearest: geared links differ there
-        away = turned + EQUAL_ROWS * away
-    return np.where(motion.found, away, np.inf)
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)

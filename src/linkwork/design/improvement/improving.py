@@ -11,7 +11,7 @@ import numpy as np
 
 from linkwork.design.derivatives.differentiable_numbers import chosen_numbers
 from linkwork.design.improvement.fit_problem import FittedNumbers, Fitting
-from linkwork.design.improvement.free_timing import freely_timed
+from linkwork.design.improvement.free_timing import paths_of
 from linkwork.design.improvement.front_designs import front_designs
 from linkwork.design.improvement.front_fit import fit_front
 from linkwork.design.improvement.goals import PathGoal
@@ -21,23 +21,21 @@ from linkwork.design.improvement.mechanism_fit import fit_numbers
 from linkwork.design.improvement.motion_bounds import least_in_rows
 from linkwork.design.improvement.proved_design import fitted_design, interrupted_design
 from linkwork.design.improvement.settings import Aid, Goal, Improvement, Points
+from linkwork.design.improvement.spread_starts import STARTS, spread_starts
 from linkwork.design.improvement.written_designs import DesignWriter
 from linkwork.foundation.arrays import Array
 from linkwork.foundation.errors import (
     InputError,
     MechanismError,
     Problem,
-    UnknownNameError,
-    choices,
 )
-from linkwork.foundation.names import GROUND, find_spelling
+from linkwork.foundation.names import GROUND
 from linkwork.foundation.operand import NotElementwise
 from linkwork.mechanism.draft import Draft
 from linkwork.mechanism.varied_number import VariedNumber, number_named
 from linkwork.motion.model import Model
 from linkwork.motion.sweeping import sweep
 from linkwork.numerics.lane_bounds import Box
-from linkwork.results.motion import Motion
 from linkwork.results.quantities.transmission import TRANSMISSION_ANGLE
 
 __all__ = [
@@ -46,15 +44,14 @@ __all__ = [
     "box_of",
     "improved_designs",
     "numbers_to_vary",
-    "point_named",
     "transmission_goals",
 ]
 
-STARTS = 16
 FACTOR = 4.0  # by which lengths may change, unless bounds are given
 _SEARCH = 0.9  # share of the search in the work; the rest is proofs
 _FAR = 2.0  # longest numbers or links, by which others may change
 _FIRST = 0.6  # share of the first search, if starts may have to be led again
+_AGAIN, _RELATED = 0.2, 0.1  # of starts led again, and of each kind of relation after that
 _OFF = math.radians(0.25)  # dead points: starts that lead to one are led again, so far from all
 # near a number that a goal does not depend on, such as a rod's length in a stroke without offset,
 # all steps would fail that move it by its effect alone
@@ -92,11 +89,12 @@ def improved_designs(
     if not numbers:
         raise InputError(f'"{model.description.name}" has no number that can vary alone')
     box = box_of(model, numbers, settings)
-    starts = box.inside(_starts(model, numbers, settings))
+    starts = box.inside(spread_starts(model, numbers, settings))
     search = _Search(model, numbers, box, points, settings, is_sound, enough, progress)
     held = {goal.of for goal in others}
     kept_off = [goal for goal in transmission_goals(model, _OFF) if goal.of not in held]
-    search.share = _FIRST if kept_off and not settings.front else 1.0
+    one = bool(settings.front or (points and not kept_off))
+    search.share = 1.0 if one else _FIRST
     try:
         fits = search.fits(others, starts)
     except NotElementwise:
@@ -108,7 +106,7 @@ def improved_designs(
     designs = search.proved(fits, range(len(starts)), [])
     locked = [k for k, own in designs if _locks(own)]
     if locked and kept_off and not search.interrupted:
-        search.begin, search.share = _FIRST, 1.0 - _FIRST
+        search.begin, search.share = _FIRST, 1.0 - _FIRST if points else _AGAIN
         known = [own for own in designs if own[1].sound or own[0] not in locked]
         led = known
         try:
@@ -120,20 +118,19 @@ def improved_designs(
         again = {k for k, _ in led}
         designs = led + [own for own in designs if own not in known and own[0] not in again]
     # relations are what fits break that lose starts, lock or do not move
-    hampered = search.lost or any(
-        _locks(own) or search.moved((k, own)).unmoved for k, own in designs
-    )
-    if hampered and not points and not search.interrupted and not any(map(_is_reached, designs)):
+    hampered = search.lost or any(_locks(own) or search.moved(own).unmoved for _, own in designs)
+    reached = points or search.interrupted or any(_is_reached(own) for _, own in designs)
+    if hampered and not reached:
         designs = search.related(others, designs, len(starts))
     if search.interrupted and not designs:
         raise KeyboardInterrupt
-    found = [interrupted_design(d[1]) if search.interrupted else search.moved(d) for d in designs]
+    told = interrupted_design if search.interrupted else search.moved
+    found = [told(own) for _, own in designs]
     return tuple(sorted(found, key=partial(_rank, settings)))
 
 
-def _is_reached(found: tuple[int, ImprovedDesign]) -> bool:
+def _is_reached(design: ImprovedDesign) -> bool:
     """Whether a sound design has no miss that a person would see."""
-    _, design = found
     sizes = [abs(float(x)) for x in design.numbers.values()]
     return design.sound and design.largest <= _EQUAL_NUMBERS * max(sizes, default=1.0)
 
@@ -183,7 +180,7 @@ class _Search:
         motion = sweep(model, certify=False)
         if not motion.found.any():
             raise InputError(f'"{model.description.name}" has no position: improve one that moves')
-        paths = _paths(model, motion, self.points) if self.points else (None,)
+        paths = paths_of(model, motion, self.points) if self.points else (None,)
         fits: list[_Fit] = []
         for part, path in enumerate(paths):
 
@@ -221,7 +218,8 @@ class _Search:
         own = self.numbers, self.box, self.together
         motion = sweep(self.model, certify=False)
         rng = np.random.default_rng(self.settings.seed)
-        for together in kept_relations(self.model, motion, self.numbers):
+        for k, together in enumerate(kept_relations(self.model, motion, self.numbers)):
+            self.begin, self.share = _FIRST + _AGAIN + k * _RELATED, _RELATED
             self.together, self.box = together, together.box(own[1])
             spread = self.settings.spread * rng.uniform(-1.0, 1.0, (count, len(together.sizes)))
             spread[0] = 0.0
@@ -232,7 +230,7 @@ class _Search:
                 continue
             except KeyboardInterrupt:
                 self.interrupted = True
-            if self.interrupted or any(map(_is_reached, known)):
+            if self.interrupted or any(_is_reached(design) for _, design in known):
                 break
         _, self.box, self.together = own
         return known
@@ -267,11 +265,10 @@ class _Search:
             self.interrupted = True
         return designs
 
-    def moved(self, found: tuple[int, ImprovedDesign]) -> ImprovedDesign:
+    def moved(self, design: ImprovedDesign) -> ImprovedDesign:
         """A design; the mechanism as it was is no improvement, unless it meets its goals."""
-        _, design = found
         x = np.array([float(q.of(self.model.description)) for q in self.numbers])
-        if _is_reached((0, replace(design, sound=True))) or not _is_known(x, [design]):
+        if _is_reached(replace(design, sound=True)) or not _is_known(x, [design]):
             return design
         told = "nothing improved: the best numbers are those of the mechanism; "
         if self.lost:
@@ -291,18 +288,6 @@ class _Search:
                 self.interrupted = True
 
 
-def _starts(model: Model, numbers: Sequence[VariedNumber], settings: Improvement) -> Array:
-    """Numbers (D, P) around those of the mechanism, its own first."""
-    x = np.array([float(q.of(model.description)) for q in numbers])
-    rng = np.random.default_rng(settings.seed)
-    count = settings.starts or STARTS
-    # a number of 0 spreads by the size of what it measures
-    sizes = np.where(x == 0.0, _sizes(model, numbers, x), x)
-    starts = x + settings.spread * sizes * rng.uniform(-1.0, 1.0, (count, len(x)))
-    starts[0] = x
-    return starts
-
-
 def transmission_goals(model: Model, least: float) -> Iterator[Aid]:
     """A least transmission angle of all dyads, as bounds in all rows [rad]."""
     angle = model.description.angle
@@ -310,21 +295,6 @@ def transmission_goals(model: Model, least: float) -> Iterator[Aid]:
     for name, asked in model.quantities.derived.items():
         if asked.row is TRANSMISSION_ANGLE:
             yield Aid(of=name, least=bound, most=angle.turn / 2.0 - bound)
-
-
-def _sizes(model: Model, numbers: Sequence[VariedNumber], x: Array) -> Array:
-    """Sizes of what numbers (P,) measure: a radian, or the longest link or distance of points."""
-    description = model.description
-    # of dimensions the kind is not known
-    largest = float(np.abs(x[[q.table != "angles" for q in numbers]]).max(initial=0.0))
-    size = largest or 1.0
-    if isinstance(description, Draft):
-        lengths = [float(description.numbers(length)) for length in description.lengths.values()]
-        places = [[float(description.numbers(c)) for c in p] for p in description.points.values()]
-        spans = np.ptp(places, axis=0) if places else np.zeros(2)
-        size = max(lengths, default=0.0) or float(spans.max()) or size
-    radian = description.angle.from_radians(1.0)
-    return np.array([radian if q.table == "angles" else size for q in numbers])
 
 
 def _check(settings: Improvement, goals: Sequence[Goal | Points]) -> None:
@@ -397,34 +367,6 @@ def box_of(model: Model, numbers: Sequence[VariedNumber], settings: Improvement)
         k = numbers.index(number)
         least[k], most[k] = low, high
     return Box(least=least, most=most, least_effect=_LEAST_EFFECT)
-
-
-def point_named(model: Model, name: str) -> str:
-    """A point as the mechanism spells it.
-
-    Raises
-    ------
-    UnknownNameError
-        If there is none.
-    """
-    spelled = find_spelling(name, model.equations.points)
-    if spelled not in model.equations.points:
-        known = choices("points", model.equations.points, name)
-        raise UnknownNameError(f'there is no point "{name}" {known}')
-    return spelled
-
-
-def _paths(model: Model, motion: Motion, goal: Points) -> tuple[PathGoal, ...]:
-    description = model.description
-    name = goal.point or next(iter(description.trace), None)
-    if name is None:
-        raise InputError(f'"{description.name}" traces no point: name one, point = "P"')
-    spelled = point_named(model, name)
-    places = np.array([complex(*place) for place in goal.points])
-    if goal.inputs is None:
-        return freely_timed(model, motion, spelled, places, goal.order != "any")
-    inputs = np.asarray(goal.inputs, dtype=float) * float(model.input_scale[0])
-    return (PathGoal(point=spelled, places=places, inputs=inputs, timed=True, ordered=True),)
 
 
 def _unfollowed(model: Model, numbers: Sequence[VariedNumber]) -> str:

@@ -6,11 +6,11 @@ from collections.abc import Callable, Sequence
 
 import numpy as np
 
-from linkwork.design.improvement.fit_problem import FitProblem, FittedNumbers, Fitting, inputs_away
+from linkwork.design.improvement.fit_problem import FitProblem, FittedNumbers, Fitting
 from linkwork.design.improvement.goals import PathGoal
 from linkwork.design.improvement.largest_miss import POWERS
 from linkwork.design.improvement.moved_goals import check_moved
-from linkwork.design.improvement.solved_lanes import SolvedLanes
+from linkwork.design.improvement.solved_lanes import SolvedLanes, inputs_away
 from linkwork.design.improvement.written_designs import DesignWriter
 from linkwork.foundation.arrays import Array
 from linkwork.mechanism.varied_number import VariedNumber
