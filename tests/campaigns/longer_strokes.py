@@ -1,4 +1,4 @@
-"""A tenth more stroke of the first traced point of every mechanism of the library.
+"""A tenth more stroke of the first traced point, or the last moving one, of every mechanism.
 
 The referee sweeps the best design anew and compares the stroke with the goal and with that of the
 mechanism: reached, nearer, or not moved. A design that is called sound must be nearer, and one that
@@ -24,13 +24,13 @@ def stroke_campaign(part: int) -> tuple[Counter[str], list[str]]:
     """Counts, and false claims, about one mechanism."""
     name = MECHANISMS[part % len(MECHANISMS)]
     mechanism = lw.example(name)
-    trace = mechanism.description.trace
-    if not trace or not mechanism.description.inputs:
-        return Counter({"no traced point": 1}), []
     try:
         motion = mechanism.sweep(certify=False)
-        strokes = {f"stroke({trace[0]}.{axis})": 0.0 for axis in "xy"}
-        strokes = {of: motion.value(of) for of in strokes}
+        moving = [p for p in motion.points if np.ptp(motion.trace(p)[motion.found].view(float)) > 0]
+        names = [*mechanism.description.trace[:1], *reversed(moving)][:1]
+        if not names:
+            return Counter({"no moving point": 1}), []
+        strokes = {of: motion.value(of) for of in (f"stroke({names[0]}.{a})" for a in "xy")}
         # the second of two equal to rounding would be another goal on another processor
         of = max(strokes, key=lambda of: round(strokes[of], 6))
         before = strokes[of]

@@ -17,7 +17,7 @@ from linkwork.design.improvement.front_fit import fit_front
 from linkwork.design.improvement.goals import PathGoal
 from linkwork.design.improvement.improved_design import ImprovedDesign
 from linkwork.design.improvement.kept_relations import Together, kept_relations
-from linkwork.design.improvement.mechanism_fit import fit_numbers
+from linkwork.design.improvement.mechanism_fit import fit_numbers, misses_before
 from linkwork.design.improvement.motion_bounds import least_in_rows
 from linkwork.design.improvement.proved_design import fitted_design, interrupted_design
 from linkwork.design.improvement.settings import Aid, Goal, Improvement, Points
@@ -36,6 +36,7 @@ from linkwork.mechanism.varied_number import VariedNumber, number_named
 from linkwork.motion.model import Model
 from linkwork.motion.sweeping import sweep
 from linkwork.numerics.lane_bounds import Box
+from linkwork.results.motion import Motion
 from linkwork.results.quantities.transmission import TRANSMISSION_ANGLE
 
 __all__ = [
@@ -137,9 +138,10 @@ def _is_reached(design: ImprovedDesign) -> bool:
 
 def _locks(design: ImprovedDesign) -> bool:
     """Whether a design comes to a dead point."""
-    motion = design.motion
-    if motion is None:
-        return False
+    return design.motion is not None and _is_locked(design.motion)
+
+
+def _is_locked(motion: Motion) -> bool:
     return not motion.found.all() or least_in_rows(motion) * motion.units.angle.radians < _OFF
 
 
@@ -168,6 +170,7 @@ class _Search:
     interrupted: bool = False
     begun: int = 0
     lost: int = 0
+    before: float = math.inf
 
     def tell(self, fraction: float) -> None:
         """A fraction of this search is done."""
@@ -196,6 +199,8 @@ class _Search:
                 goals=goals,
                 together=self.together,
             )
+            if path is None and not settings.front and not _is_locked(motion):
+                self.before = misses_before(given, minimax=settings.fit == "minimax")
             if settings.front:
                 found = fit_front(given, starts, settings.front, progress=told)
             else:
@@ -266,11 +271,13 @@ class _Search:
         return designs
 
     def moved(self, design: ImprovedDesign) -> ImprovedDesign:
-        """A design; the mechanism as it was is no improvement, unless it meets its goals."""
+        """A design; one that misses its goals as the mechanism did is no improvement."""
         x = np.array([float(q.of(self.model.description)) for q in self.numbers])
-        if _is_reached(replace(design, sound=True)) or not _is_known(x, [design]):
+        misses = design.largest if self.settings.fit == "minimax" else design.total
+        still = _is_known(x, [design]) or misses >= self.before * (1.0 - _EQUAL_NUMBERS)
+        if not still or _is_reached(replace(design, sound=True)):
             return design
-        told = "nothing improved: the best numbers are those of the mechanism; "
+        told = "nothing improved: the mechanism as it was is no farther from its goals; "
         if self.lost:
             told += f"{self.lost} of {self.begun} starts have no position on its branch"
         else:

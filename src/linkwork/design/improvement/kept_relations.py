@@ -82,8 +82,12 @@ def kept_relations(
     if len(x) < 2:
         return
     scaled = _scaled(model, numbers, x)
-    groups = list(_groups(model, numbers, x, scaled))
-    free = [own for own in groups if _moves(model, motion, numbers, x + _TRIED * own)]
+    free = []
+    for group in _groups(model, numbers, x, scaled):
+        # what cannot change together may change alone
+        alone = [group, *(np.eye(len(x)) * group)[group != 0.0]]
+        moving = [own for own in alone if _moves(model, motion, numbers, x + _TRIED * own)]
+        free += moving[:1] if moving and moving[0] is group else moving
     if free and len(free) < len(numbers):
         yield Together.of(x, free)
     if scaled.any() and not any(np.array_equal(scaled, own) for own in free):

@@ -17,7 +17,7 @@ from linkwork.mechanism.varied_number import VariedNumber
 from linkwork.motion.model import Model
 from linkwork.results.motion import Motion
 
-__all__ = ["fit_numbers", "path_misses"]
+__all__ = ["fit_numbers", "misses_before", "path_misses"]
 
 _STEPS = (60, 200, 200)  # of all lanes, then of the better half
 _BOUND_STEPS = (60,) * 7  # the same; after each the shifts of bounds change
@@ -76,3 +76,11 @@ def path_misses(
     place = found.rows.place(path.point).v
     value = found.values([place.real, place.imag])[0][0]
     return np.asarray(np.abs(value[:, 0] + 1j * value[:, 1] - path.places))
+
+
+def misses_before(given: Fitting, *, minimax: bool) -> float:
+    """What a fit makes small, of the mechanism as it is; infinite if it breaks a bound."""
+    problem = FitProblem(given, 1)
+    now = problem.result(problem.reached(problem.begun(problem.x[None]), np.arange(1)))
+    kept = now.broken[0] == 0.0 and not now.beyond.any()
+    return float((now.largest if minimax else now.total)[0]) if kept else np.inf
