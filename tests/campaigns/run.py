@@ -32,6 +32,7 @@ from tests.campaigns.kinds import kind_campaign
 from tests.campaigns.lanes import judge_lane_steps, judge_lanes
 from tests.campaigns.library_defects import MECHANISMS, library_defect_campaign
 from tests.campaigns.links import link_campaign
+from tests.campaigns.longer_strokes import stroke_campaign
 from tests.campaigns.monkey import monkey_campaign
 from tests.campaigns.motion import sweep_campaign
 from tests.campaigns.nine_points import nine_point_campaign
@@ -62,6 +63,7 @@ _OWN_PART = {
     "parallel-trains": 1,
     "poses": 1000,
     "precision-points": 4,
+    "strokes": 1,
     "whole-motions": 1,
 }
 #: Mechanisms in random order, so that a smaller campaign is a sample of all of them.
@@ -191,6 +193,7 @@ CAMPAIGNS: dict[str, tuple[Callable[[int], tuple[Counter[str], list[str]]], int]
     "goals": (goal_campaign, 4 * len(MECHANISMS)),
     "gradients": (_gradients, EVERY),
     "improve": (improvement_campaign, IMPROVEMENTS),
+    "strokes": (stroke_campaign, len(MECHANISMS)),
     "whole-motions": (whole_motion_campaign, MOTIONS),
     "commands": (command_campaign, COMMANDS),
 }

@@ -73,12 +73,35 @@ def test_gears_slots_speeds_and_traces_of_linkage_files() -> None:
     read = _read("bar.linkage2")
     assert read.gears[0].arm == "ground"
     radii = tuple(map(read.numbers, read.gears[0].radii or ()))
-    assert radii == pytest.approx((200 / 3, 100 / 3), rel=1e-15)
+    assert radii == pytest.approx((200 / 3 * 25.4 / 96, 100 / 3 * 25.4 / 96), rel=1e-15)
     assert read.welds[0].links == ("link0", "link4")
     assert (read.slots[0].point, read.slots[0].on) == ("P5", "link2")
     assert read.inputs == (Input(link="link0", speed="15.0 rpm"),)
     assert read.trace == ("P4",)
     assert "P7" not in read.points  # of the drawing layer
+
+
+@pytest.mark.parametrize(
+    ("shown", "unit", "size"),
+    [("Millimeters", "mm", 10.0), ("Inches", "in", 10 / 25.4), ("Leagues", "mm", 10.0)],
+)
+def test_lengths_of_linkage_files_are_in_96ths_of_an_inch(
+    shown: str, unit: str, size: float
+) -> None:
+    text = (
+        f'<linkage2><program units="{shown}"/><connector id="0" x="0" y="0" anchor="true"/>'
+        '<connector id="1" x="37.7952755905512" y="0"/>'
+        '<connector id="2" x="-37.7952755905512" y="0" anchor="true"/>'
+        '<Link id="0"><connector id="0"/><connector id="1"/></Link>'
+        '<Link id="1" actuator="true" throw="377.952755905512"><connector id="2"/>'
+        '<connector id="1"/></Link></linkage2>'
+    )
+    found = read_foreign(text.encode(), "ten.linkage2")
+    assert found.linkage.length == unit
+    assert found.linkage.points["P1"] == pytest.approx((size, 0.0), rel=1e-14)
+    assert found.linkage.inputs[0].stop == pytest.approx(12 * size, rel=1e-14)
+    unknown = 'unknown "Leagues", mm is assumed'
+    assert (unknown in {own.what for own in found.left_out}) == (shown == "Leagues")
 
 
 def test_a_construction_of_circles_is_bars_of_their_radii() -> None:

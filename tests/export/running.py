@@ -28,7 +28,7 @@ def _command(file: Path) -> list[str]:
         case ".js":
             return ["node", str(file)]
         case ".m":
-            return ["octave-cli", "-q", "--path", str(file.parent), "--eval", f"{file.stem};"]
+            return ["octave-cli", "-q", "--path", str(file.parent), "--eval", file.stem]
     built = file.with_suffix("")
     flags = ["-std=c99", "-O2", "-Wall", "-Wextra", "-pedantic", "-Werror"]
     command = ["cc", *flags, str(file), "-o", str(built), "-lm"]

@@ -267,6 +267,22 @@ def test_the_same_plates_are_the_same_bytes(tmp_path: Path) -> None:
         assert once != plates_of(stack, file, layout=True)
 
 
+def test_each_assembled_plate_is_a_closed_solid_of_its_file(tmp_path: Path) -> None:
+    mechanism = coarse(read_example("four-bar"), 36)
+    trimesh = import_module("trimesh")
+    stack, _ = made(mechanism)
+    wanted = {p.name: stack.sizes.thickness * p.plate.area for p in assembled(stack)}
+    for suffix in (".stl", ".3mf"):
+        mechanism.to_plates(tmp_path / f"plates{suffix}")
+        solids = trimesh.load_scene(tmp_path / f"plates{suffix}").geometry
+        assert len(solids) == 4, suffix
+        assert all(solid.is_volume for solid in solids.values()), suffix
+        # arcs are inscribed polygons
+        volumes = sorted(solid.volume for solid in solids.values())
+        assert volumes == pytest.approx(sorted(wanted.values()), rel=1e-3), suffix
+        assert {name.rpartition("/")[2] for name in solids} == set(wanted), suffix
+
+
 def test_files_are_read_by_other_programs(tmp_path: Path) -> None:
     mechanism = coarse(read_example("four-bar"), 36)
     options = lw.PlateOptions(labels=True)

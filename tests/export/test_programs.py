@@ -143,3 +143,12 @@ def test_every_place_of_a_template_is_filled(tmp_path: Path) -> None:
         text = file.read_text("utf-8")
         assert "@{" not in text
         assert np.char.count(text, "A2").item() > 0
+
+
+def test_octave_assigns_no_result_that_nobody_takes(tmp_path: Path) -> None:
+    read_example("four-bar").to_code(tmp_path / "bar.m")
+    body = (tmp_path / "bar.m").read_text("utf-8").partition("function p = numbers")[0]
+    # an assigned first output of a plain call is printed as "ans = [](0x0)" behind the table
+    table = body.rpartition("return\n  end\n")[2]
+    assert table.count("result = ") == 1
+    assert "if nargout > 0\n    result = [];\n  end" in table

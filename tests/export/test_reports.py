@@ -543,3 +543,19 @@ def test_every_mechanism_of_the_library_has_a_report(name: str, tmp_path: Path) 
     text = (tmp_path / "x.md").read_text("utf-8")
     assert "nan" not in re.split(r"\W+", text)
     assert "What is proved" in text
+
+
+def test_reports_leave_out_what_a_question_hides(tmp_path: Path) -> None:
+    ask = lw.Question(text="How far?", answer=52.75, tolerance=1, unit="deg")
+    bar = coarse(lw.example("four-bar"), 36).changed(questions=[ask])
+    (file,) = bar.to_report(tmp_path / "bar.html")
+    text = file.read_text("utf-8")
+    left_out = text.count("a question of the file hides it")
+    kept = re.findall(r"<h2[^>]*>(.*?)</h2>", text)
+    assert left_out >= 6
+    assert not any("Motion" in head or "Plots" in head or "Circuits" in head for head in kept)
+    assert "Mechanism file" not in kept
+    assert "52.75" not in text
+    assert "The mechanism crank" not in text
+    bar.changed(questions=()).to_report(tmp_path / "bar.html")
+    assert "a question of the file" not in file.read_text("utf-8")

@@ -268,3 +268,22 @@ def test_a_joint_that_rests_has_a_polynomial_that_is_constant() -> None:
     yoke = read_example("scotch-yoke").changed(name="yoke")
     text = urdf_of(Robot(yoke.model, yoke.solve()), yoke.sweep(step=360 / 11))
     assert Tree.fromstring(text).findall("coupling")
+
+
+def test_every_input_has_an_actuator_of_its_joint(tmp_path: Path) -> None:
+    robot = read_example("five-bar-robot")
+    texts = {}
+    for suffix in (".mjcf", ".sdf", ".urdf"):
+        robot.to_robot(tmp_path / f"robot{suffix}")
+        texts[suffix] = (tmp_path / f"robot{suffix}").read_text("utf-8")
+    motors = Tree.fromstring(texts[".mjcf"]).iterfind("actuator/motor")
+    assert [(own.get("name"), own.get("joint")) for own in motors] == [
+        ("input:left", "O1:left"), ("input:right", "O2:right"),
+    ]  # fmt: skip
+    assert "whose motors a model cannot give: O1:left, O2:right." in texts[".sdf"]
+    assert "in step with it as in the table: O2:right." in texts[".urdf"]
+    bar = coarse(read_example("four-bar"), 36).driven_by(link="coupler")
+    bar.to_robot(tmp_path / "bar.mjcf", at=20)
+    text = (tmp_path / "bar.mjcf").read_text("utf-8")
+    assert "Not driven, between bodies without a common joint: coupler." in text
+    assert "<motor" not in text

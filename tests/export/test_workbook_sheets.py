@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+import zipfile
 from pathlib import Path
 from typing import Any
 
@@ -128,3 +129,26 @@ def test_too_many_cells_are_refused(tmp_path: Path) -> None:
     with pytest.raises(InputError, match=f"^{re.escape(message)}$"):
         mechanism.to_excel(tmp_path / "x.xlsx", motion)
     assert not (tmp_path / "x.xlsx").exists()
+
+
+@pytest.mark.parametrize(
+    "hostile", ["=cmd|' /C calc'!A0", "cmd!A0", "=1+1", "{=1+1}", "http://a.b"]
+)
+def test_no_text_of_a_file_becomes_a_formula_a_reference_or_a_link(
+    hostile: str, tmp_path: Path
+) -> None:
+    mechanism = lw.example("slider-crank").changed(
+        name=hostile, length=hostile, purpose=hostile, source=hostile, family=hostile
+    )
+    mechanism.to_excel(tmp_path / "cycle.xlsx", mechanism.sweep(step=90, certify=False))
+    titles = 0
+    with zipfile.ZipFile(tmp_path / "cycle.xlsx") as parts:
+        for name in parts.namelist():
+            text = parts.read(name).decode("utf-8", "replace")
+            for formula in re.findall(r"<(?:c:)?f>(.*?)</(?:c:)?f>", text):
+                assert not re.search(r"calc|cmd|^1\+1$", formula), name
+            assert "hyperlink" not in text, name
+            assert "externalLink" not in name
+            titles += len(re.findall(r"<c:title><c:tx><c:rich>", text))
+            assert "<c:title><c:tx><c:strRef>" not in text, name
+    assert titles == 9

@@ -129,3 +129,29 @@ def test_axe_finds_nothing_serious_in_a_page_with_sliders(browser: Any, tmp_path
         page.wait_for_selector(".lw-sliders")
         assert_accessible(page)
         context.close()
+
+
+def test_what_a_question_hides_is_hidden_on_paper_and_in_presentations(open_page: Open) -> None:
+    hide = ("numbers", "charts", "limits", "input", "equations")
+    ask = lw.Question(text="How far?", answer="stroke(rocker)", tolerance=1, hide=hide)
+    bar = lw.example("four-bar").changed(questions=[ask])
+    motion = bar.sweep(step=10, certify=False)
+    page = open_page({"motion": motion}, equations=bar.equations().mathml())
+    shown = (".lw-table", ".lw-chart", ".lw-readout", ".lw-equation", ".lw-motion-numbers")
+    visible = "els => els.some(e => e.checkVisibility() && e.innerText.trim() !== '')"
+
+    def seen() -> list[str]:
+        return [kind for kind in shown if page.locator(kind).evaluate_all(visible)]
+
+    for media in ("print", "screen"):
+        page.emulate_media(media=media)
+        assert page.locator(".lw-question").is_visible()
+        assert seen() == [], media
+    page.keyboard.press("F9")
+    page.locator(".lw-presenting").wait_for()
+    assert seen() == []
+    page.keyboard.press("F9")
+    page.locator(".lw:not(.lw-presenting)").wait_for()
+    page.get_by_role("button", name="Show the answer").click()
+    page.emulate_media(media="print")
+    assert {".lw-table", ".lw-chart", ".lw-readout", ".lw-equation"} <= set(seen())

@@ -13,7 +13,7 @@ from linkwork.foundation.plain_numbers import as_told
 from linkwork.mechanism.description import Description
 from linkwork.mechanism.dimensions import Number
 from linkwork.mechanism.driven_input import Input
-from linkwork.mechanism.field_types import fields_of, made_of
+from linkwork.mechanism.field_types import made_of, merged
 from linkwork.mechanism.varied_number import numbers_named, with_numbers
 
 if TYPE_CHECKING:
@@ -111,21 +111,26 @@ class DescribedMechanism:
         ----------
         **parts
             Fields of the description, as in :func:`linkage` or :func:`loops`: ``points``,
-            ``lengths``, ``guess``, …
+            ``lengths``, ``guess``, … Entries of such tables join those that exist, ``None`` removes
+            the one of its name, an empty table all; lists replace lists.
 
         Raises
         ------
+        UnknownNameError
+            For a field, or an entry to be removed, that does not exist.
         MechanismError
             With every problem found.
 
         Examples
         --------
         >>> import linkwork as lw
-        >>> longer = lw.example("four-bar").changed(lengths={"O2 A": 42, "A B": 120, "O4 B": 80})
+        >>> longer = lw.example("four-bar").changed(lengths={"O2 A": 42})
+        >>> dict(longer.description.lengths)
+        {'O2 A': 42, 'A B': 120, 'O4 B': 80, 'O2 O4': 100}
         >>> round(longer.solve(at=60)["rocker"], 3)
         63.482
         """
-        return type(self)(replace(self.description, **fields_of(type(self.description), parts)))
+        return type(self)(replace(self.description, **merged(self.description, parts)))
 
     def inversion(self, link: str, *, input: Input | None = None) -> Self:
         """The same kinematic chain with another link as ground; the old ground becomes ``frame``.

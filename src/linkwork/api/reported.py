@@ -26,6 +26,15 @@ _MOST_TOLERANCES = 6  # quantities, if the template names none
 _NO_POINTS = "the mechanism has no points to draw"
 _NO_INPUT = "the mechanism has no input"
 _NOT_FOUND = "no position was found"
+_HIDDEN = "a question of the file hides it: report a copy of the file without [[questions]]"
+#: The sections that would show what a question hides.
+_HIDING = {
+    "numbers": ("vectors", "newton", "motion", "configurations", "forces", "tolerances"),
+    "charts": ("plots",),
+    "limits": ("motion", "circuits", "proof"),
+    "input": ("vectors", "newton", "configurations"),
+    "equations": ("equations", "vectors", "newton"),
+}
 
 
 @internal("findings")
@@ -170,6 +179,10 @@ class _Gathering:
 
     def _leave_out(self, position: Position, swept: Motion | None) -> None:
         """Note the sections that have nothing to show."""
+        for question in self.mechanism.description.questions:
+            # the file gives answers
+            hidden = [name for part in question.hide for name in _HIDING[part]]
+            self._without([*hidden, "file"], _HIDDEN)
         drawn = bool(self.mechanism.model.compiled.points.names)
         if not position.status.ok:
             self._without(("drawing", "vectors", "tolerances"), _NOT_FOUND)

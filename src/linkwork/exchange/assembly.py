@@ -91,12 +91,15 @@ class Assembly:
         """Ground and links that carry all of these points."""
         return [name for name in (GROUND, *self.links) if self.carries(name).issuperset(points)]
 
-    def guide(self, on: str, point: str, along: complex) -> tuple[str, str]:
-        """A line on a link, through a point as drawn: from its place in a direction."""
+    def guide(
+        self, on: str, point: str, along: complex, at: complex | None = None
+    ) -> tuple[str, str]:
+        """A line on a link, from a place in a direction: by default that of a point as drawn."""
+        at = self.points[point] if at is None else at
         # any length would do: this one is visible in drawings
-        size = max((abs(p - self.points[point]) for p in self.points.values()), default=0.0) or 1.0
-        first = self.add_point(f"{point}_from", self.points[point])
-        second = self.add_point(f"{point}_to", self.points[point] + along / abs(along) * size)
+        size = max((abs(p - at) for p in self.points.values()), default=0.0) or 1.0
+        first = self.add_point(f"{point}_from", at)
+        second = self.add_point(f"{point}_to", at + along / abs(along) * size)
         for end in (first, second):
             self.put_on(on, end)
         return first, second

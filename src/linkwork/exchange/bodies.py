@@ -4,16 +4,18 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
+from itertools import combinations
 
 import numpy as np
 
 from linkwork.exchange.assembly import Assembly
 from linkwork.exchange.source import Source
 from linkwork.foundation.arrays import Array
+from linkwork.foundation.elementwise import phase
 from linkwork.foundation.names import GROUND
 
-__all__ = ["Body", "BodyJoint", "Planar", "Pose", "quaternion", "turn_about"]
+__all__ = ["Body", "BodyJoint", "Planar", "Pose", "Weld", "quaternion", "turn_about"]
 
 _PARALLEL = 1e-6  # of unit vectors
 _NEAR = 1e-9  # of the size of the mechanism
@@ -80,25 +82,47 @@ class Body:
     sites: dict[str, Array] = field(default_factory=dict)
 
 
+@dataclass(frozen=True, kw_only=True)
+class Weld:
+    """Two bodies that are one: the second has this pose in the world where the first is drawn."""
+
+    one: str
+    two: str
+    pose: Pose
+    line: int
+
+
+#: A rotation (of size 1) and a translation in the plane.
+_Move = tuple[complex, complex]
+
+
 class Planar:
     """Bodies projected on the plane that is normal to their hinges.
 
-    ``links`` and ``points`` give the link of a body and the point of a joint.
+    ``links`` and ``points`` give the link of a body and the point of a joint; ``spots`` the places
+    of the points of every link in the pose in which its first body is drawn. Where links do not
+    meet as drawn, their points are a sketch and the lengths are exact.
     """
 
-    def __init__(self, source: Source, name: str, bodies: list[Body], same: dict[str, str]) -> None:
+    def __init__(
+        self, source: Source, name: str, bodies: list[Body], welds: Iterable[Weld] = ()
+    ) -> None:
         self.source, self.assembly = source, Assembly(source, name)
         self.assembly.length = "m"
         self.bodies = {body.name: body for body in bodies}
-        self._same = same
+        self._same: dict[str, tuple[str, _Move]] = {}
         self._basis(bodies)
         self.links: dict[str, str] = {}
         self.points: dict[str, str] = {}
+        self._slides: list[tuple[str, str, complex, bool]] = []
         places = [self.at(place) for body in bodies for place in self._places(body)]
         self.size = max((abs(p - places[0]) for p in places), default=0.0) or 1.0
+        for weld in welds:
+            self._weld(weld)
         for body in bodies:
-            if self.root(body.name) == body.name and body.name != GROUND:
+            if self._placed(body.name)[0] == body.name and body.name != GROUND:
                 self.links[body.name] = self.assembly.add_link(body.name)
+        self.spots: dict[str, dict[str, complex]] = {n: {} for n in (GROUND, *self.links.values())}
         for body in bodies:
             if body.joint is not None:
                 self._join(body, body.joint)
@@ -106,21 +130,47 @@ class Planar:
     def _places(self, body: Body) -> Iterable[Array]:
         return [*body.sites.values(), *([body.joint.at] if body.joint else [body.pose.at])]
 
-    def root(self, body: str) -> str:
-        """The body that this one is fixed on."""
-        # welds in a circle must end
-        seen = set()
-        while body not in seen and body != GROUND:
-            seen.add(body)
+    def _weld(self, weld: Weld) -> None:
+        """Make two bodies one: ground stays, otherwise the first."""
+        drawn = self.bodies[weld.two].pose
+        turn = weld.pose.turn @ drawn.turn.T
+        if float((turn @ self.normal) @ self.normal) < 1.0 - _PARALLEL:
+            self.source.leave_out(f"line {weld.line}", "weld that turns a body out of the plane")
+            return
+        rotation = self.at(turn @ self.first)
+        shift = self.at(weld.pose.at) - rotation * self.at(drawn.at)
+        (kept, first), (lost, second) = self._placed(weld.one), self._placed(weld.two)
+        move = _after(_after(first, (rotation / abs(rotation), shift)), _back(second))
+        if abs(move[0] - 1.0) <= _NEAR and abs(move[1]) <= _NEAR * self.size:
+            move = (1.0 + 0j, 0j)
+        if lost == GROUND:
+            kept, lost, move = lost, kept, _back(move)
+        if kept != lost:
+            self._same[lost] = kept, move
+        elif move != (1.0, 0.0):
+            self.source.leave_out(f"line {weld.line}", "weld that contradicts others")
+
+    def _placed(self, body: str) -> tuple[str, _Move]:
+        """The body that this one is fixed on, and its movement from where it is drawn to there."""
+        move: _Move = (1.0 + 0j, 0j)
+        while body != GROUND:
             if body in self._same:
-                body = self._same[body]
+                body, own = self._same[body]
+                move = _after(own, move)
             elif self.bodies[body].joint is None:
                 body = self.bodies[body].parent
-        return body
+            else:
+                break
+        return body, move
+
+    def spot(self, body: str, place: Array) -> complex:
+        """A place of a body in the pose of its link."""
+        rotation, shift = self._placed(body)[1]
+        return rotation * self.at(place) + shift
 
     def link(self, body: str) -> str:
         """The link of a body, or ground."""
-        root = self.root(body)
+        root = self._placed(body)[0]
         return GROUND if root == GROUND else self.links[root]
 
     def _basis(self, bodies: list[Body]) -> None:
@@ -160,34 +210,113 @@ class Planar:
             self.source.leave_out(f"line {body.line}", f'joint "{joint.name[:40]}" inside one link')
             return
         if joint.kind == "hinge":
-            self.points[joint.name] = self.pin(joint.name, joint.at, body.parent, body.name)
+            self.points[joint.name] = self.pin(
+                joint.name, (body.parent, joint.at), (body.name, joint.at)
+            )
             return
-        point = self.pin(joint.name, joint.at, body.name)
+        point = self.pin(joint.name, (body.name, joint.at))
         along = complex(float(joint.axis @ self.first), float(joint.axis @ self.second))
-        line = self.assembly.guide(on, point, along)
+        turns = [self._placed(each)[1][0] for each in (body.parent, body.name)]
+        at = self.spot(body.parent, joint.at)
+        line = self.assembly.guide(on, point, turns[0] * along, at)
+        self.spots[on].update({end: self.assembly.points[end] for end in line})
         slide = self.assembly.add_slider(joint.name.partition(":")[0], own, point, on, line)
         self.points[joint.name] = slide
+        self._slides.append((slide, own, turns[1] * along, turns != [1.0, 1.0]))
 
-    def pin(self, name: str, place: Array, *bodies: str) -> str:
-        """A point of bodies: one that a body has there, or a new one, called like a site there."""
-        at, links = self.at(place), [self.link(body) for body in bodies]
+    def pin(self, name: str, *ends: tuple[str, Array]) -> str:
+        """A point at places of bodies: one that is there, or a new one, called like a site."""
+        # the place of a point on ground is exact
+        own = sorted(
+            ((self.link(body), self.spot(body, at), body) for body, at in ends),
+            key=lambda end: end[0] != GROUND,
+        )
         near = _NEAR * self.size
         # two pins at one place are one pin of three links
-        known = (p for link in links for p in sorted(self.assembly.carries(link)))
-        point = next((p for p in known if abs(self.assembly.points[p] - at) <= near), None)
-        if point is None:
-            sites = (item for body in bodies for item in self.bodies[body].sites.items())
-            wanted = next((s for s, where in sites if abs(self.at(where) - at) <= near), name)
-            point = self.assembly.add_point(wanted.rpartition("/")[2].partition(":")[0], at)
-        for link in links:
+        known = [
+            p
+            for link, at, _ in own
+            for p, q in sorted(self.spots[link].items())
+            if abs(q - at) <= near
+        ]
+        known.sort(key=lambda point: point not in self.assembly.fixed)
+        if not known:
+            sites = ((s, b, at, p) for _, at, b in own for s, p in self.bodies[b].sites.items())
+            wanted = next((s for s, b, at, p in sites if abs(self.spot(b, p) - at) <= near), name)
+            spots = [at for _, at, _ in own]
+            # between the places of two links that do not meet: neither is more right
+            middle = spots[0] if own[0][0] == GROUND else sum(spots) / len(spots)
+            at = spots[0] if max(abs(p - spots[0]) for p in spots) <= near else middle
+            known.append(self.assembly.add_point(wanted.rpartition("/")[2].partition(":")[0], at))
+        point = known[0]
+        for link, at, _ in own:
             self.assembly.put_on(link, point)
+            self.spots[link].setdefault(point, at)
+        place = self.spots[GROUND].get(point, self.assembly.points[point])
+        # points of one link at one place become one
+        self.assembly.points.update(dict.fromkeys(known, place))
         return point
 
     def add_sites(self) -> None:
         """Points of links at sites where no joint is."""
         for body in self.bodies.values():
             for name, place in body.sites.items():
-                self.pin(name, place, body.name)
+                self.pin(name, (body.name, place))
+
+    def contradictory(self) -> bool:
+        """Whether two links, or ground and a link, share two points at different distances."""
+        found: dict[frozenset[str], float] = {}
+        for spots in self.spots.values():
+            for a, b in combinations(spots, 2):
+                distance = abs(spots[a] - spots[b])
+                known = found.setdefault(frozenset((a, b)), distance)
+                if abs(known - distance) > _NEAR * self.size:
+                    return True
+        return False
+
+    def measure(self) -> None:
+        """Give the exact dimensions of the links whose points are drawn elsewhere."""
+        drawn, near = self.assembly.points, _NEAR * self.size
+        for link, points in self.assembly.links.items():
+            spots, first = self.spots[link], next(iter(points), "")
+            # points at one place are joined
+            rest = [p for p in points if abs(spots[p] - spots[first]) > near]
+            if not rest:
+                continue
+            base = spots[rest[0]] - spots[first]
+            moved = any(
+                abs(abs(spots[a] - spots[b]) - abs(drawn[a] - drawn[b])) > near
+                for a, b in combinations(spots, 2)
+            )
+            if moved:
+                self._follow(link, spots)
+            for point in rest if moved else ():
+                arm = spots[point] - spots[first]
+                self.assembly.lengths[f"{first} {point}"] = abs(arm)
+                if point != rest[0]:
+                    angle = math.degrees(phase(arm / base))
+                    self.assembly.angles[f"{rest[0]} {first} {point}"] = angle
+            angles = {
+                slide: math.degrees(phase(base / along))
+                for slide, own, along, turned in self._slides
+                if own == link and (moved or turned)
+            }
+            self.assembly.parts["sliders"] = [
+                replace(part, angle=angles.get(part.name))
+                for part in self.assembly.parts["sliders"]
+            ]
+
+    def _follow(self, link: str, spots: dict[str, complex]) -> None:
+        """Draw the points that no other link has where the others of the link take them."""
+        drawn = self.assembly.points
+        shared = [p for p in spots if len(self.assembly.carriers(p)) > 1]
+        # a link that meets no other is drawn as it is
+        first, second = (shared[0], shared[-1]) if shared else ("", "")
+        for point in spots if shared else ():
+            if point not in shared:
+                arm = (drawn[second] - drawn[first]) * (spots[second] - spots[first]).conjugate()
+                turn = arm / abs(arm) if arm else 1.0
+                drawn[point] = drawn[first] + turn * (spots[point] - spots[first])
 
     def angle(self, link: str) -> float:
         """The direction of a link as drawn [rad]; 0 of ground."""
@@ -195,3 +324,12 @@ class Planar:
             return 0.0
         a, b = (self.assembly.points[point] for point in self.assembly.links[link][:2])
         return math.atan2((b - a).imag, (b - a).real)
+
+
+def _after(second: _Move, first: _Move) -> _Move:
+    """The first movement, then the second."""
+    return second[0] * first[0], second[0] * first[1] + second[1]
+
+
+def _back(move: _Move) -> _Move:
+    return move[0].conjugate(), -move[0].conjugate() * move[1]

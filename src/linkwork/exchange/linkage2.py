@@ -1,7 +1,7 @@
 """Linkage by David Rector: XML with connectors, links and ratios, ``.linkage2``.
 
-After ``CLinkageDoc::ReadIn`` and ``WriteOut`` of the program's published source. Coordinates are in
-its drawing units, whose size it does not write.
+After ``CLinkageDoc::ReadIn`` and ``WriteOut`` of the program's published source. Lengths are in
+1/96 inch, whatever unit the file says is shown.
 """
 
 from __future__ import annotations
@@ -13,6 +13,7 @@ from linkwork.exchange.joint_rows import drive_joint
 from linkwork.exchange.source import Source
 from linkwork.exchange.xml_tree import Element, xml_tree
 from linkwork.foundation.names import GROUND
+from linkwork.foundation.units import LENGTHS
 from linkwork.mechanism.driven_input import Input
 from linkwork.mechanism.part.index import PARTS
 
@@ -20,6 +21,10 @@ __all__ = ["SUFFIXES", "TITLE", "matches", "read"]
 
 TITLE, SUFFIXES = "Linkage (Rector) XML", (".linkage2",)
 _DRAWING_LAYER = 1
+#: The unit of our file by the one that is shown.
+_UNITS = {
+    "Millimeters": "mm", "Centimeters": "cm", "Meters": "m", "Inches": "in", "Feet": "ft",
+}  # fmt: skip
 _SIDES = ("link", "Link", "element")
 
 
@@ -37,10 +42,14 @@ def read(source: Source) -> Assembly:
 class _Document:
     def __init__(self, source: Source, root: Element) -> None:
         self.source, self.assembly = source, Assembly(source)
-        self.assembly.length = "unit"
+        program = root.one("program") or Element("program", {}, root.line)
+        shown = program.get("units", "Millimeters")
+        self.assembly.length = source.chosen(shown, _UNITS, f"line {program.line}")
+        self.scale = float(LENGTHS["in"] / LENGTHS[self.assembly.length] / 96)
+        if program.get("scalefactor", "1") != "1":
+            source.leave_out(f"line {program.line}", "factor of the lengths that are shown")
         self.points: dict[str, str] = {}
         self.links: dict[str, str] = {}
-        source.leave_out("the file", "the unit of length: drawing units have no stated size")
         connectors = self._mechanical(root, "connector")
         links = [own for own in root.children if own.tag in _SIDES and self._is_mechanical(own)]
         for own in connectors:
@@ -71,11 +80,14 @@ class _Document:
             self.source.refuse(f"<{own.tag}> has no id", own.line)
         return own.get("id")
 
+    def _length(self, own: Element, key: str, default: str = "") -> float:
+        return self.scale * self.source.number(own.get(key, default), key, own.line)
+
     def _add_connector(self, own: Element) -> None:
         key = self._id(own)
         if key in self.points:
             self.source.refuse(f'two connectors have the id "{key[:40]}"', own.line)
-        x, y = (self.source.number(own.get(c), c, own.line) for c in "xy")
+        x, y = (self._length(own, c) for c in "xy")
         point = self.assembly.add_point(
             own.get("name") or f"P{key}", complex(x, y), own.get("anchor") == "true"
         )
@@ -107,7 +119,7 @@ class _Document:
         wanted = own.get("name") or f"actuator{own.get('id')}"
         name = self.assembly.add_part("cylinders", wanted, "actuator", between=tuple(points))
         a, b = (self.assembly.points[point] for point in points)
-        throw = self.source.number(own.get("throw", "0"), "throw", own.line)
+        throw = self._length(own, "throw", "0")
         if throw > 0:
             start = abs(b - a)
             which = Input(cylinder=name, start=start, stop=start + throw, step=throw / 100.0)
@@ -178,7 +190,7 @@ class _Document:
         if len(ends) != 2 or len(wheels) != 2 or wheels[0] == wheels[1]:
             self.source.leave_out(place, "ratio without two wheels")
             return
-        sizes = [self.source.number(link.get("size"), "size", link.line) for _, link in ends]
+        sizes = [self._length(link, "size") for _, link in ends]
         centers = [self.assembly.links[wheel][0] for wheel in wheels]
         arms = [name for name in self.assembly.carriers(*centers) if name not in wheels]
         if not arms or min(sizes) <= 0 or centers[0] == centers[1]:

@@ -13,7 +13,7 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from linkwork.exchange.assembly import Assembly
-from linkwork.exchange.bodies import Body, BodyJoint, Planar, Pose, quaternion, turn_about
+from linkwork.exchange.bodies import Body, BodyJoint, Planar, Pose, Weld, quaternion, turn_about
 from linkwork.exchange.source import Source
 from linkwork.exchange.xml_tree import Element, xml_tree
 from linkwork.foundation.arrays import Array
@@ -23,7 +23,14 @@ from linkwork.mechanism.driven_input import Input
 __all__ = ["SUFFIXES", "TITLE", "matches", "read"]
 
 TITLE, SUFFIXES = "MJCF (MuJoCo)", (".mjcf", ".xml")
-_DRAWN = ("geom", "camera", "light", "inertial", "site", "joint", "body")
+_READ = ("compiler", "default", "worldbody", "equality", "actuator")
+_DRAWN = ("size", "visual", "statistic", "asset")  # of pictures and buffers only
+
+
+_FORCES = {
+    "range": "limits", "damping": "damping", "stiffness": "stiffness", "frictionloss": "friction",
+    "armature": "inertia of the rotor",
+}  # fmt: skip
 
 
 def matches(head: str) -> bool:
@@ -43,11 +50,18 @@ class _World:
     root: Element
     bodies: list[Body] = field(default_factory=list)
     joints: dict[str, str] = field(default_factory=dict)  # the body of each joint
+    sites: dict[str, tuple[Body, Element]] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
         # sections of a kind are merged, the later one counts
         given = {k: v for own in self.root.all("compiler") for k, v in own.attributes.items()}
         self.radians = 1.0 if given.get("angle") == "radian" else math.pi / 180.0
+        if given.get("coordinate") == "global":
+            self.source.refuse(
+                'coordinate="global" is not read, as MuJoCo does not any more: write coordinates '
+                "of the parent body",
+                next(self.root.all("compiler")).line,
+            )
         self.sequence = given.get("eulerseq", "xyz")
         if not re.fullmatch("[xyzXYZ]{3}", self.sequence):
             self.source.refuse("eulerseq must be three of x, y, z")
@@ -57,6 +71,8 @@ class _World:
         for own in self.root.children:
             if own.tag == "include":
                 self.source.leave_out(f"line {own.line}", "include: other files are not read")
+            elif own.tag not in _READ + _DRAWN:
+                self.source.leave_out(f"line {own.line}", f"section <{own.tag[:20]}>")
         worlds = list(self.root.all("worldbody"))
         if not worlds:
             self.source.refuse("has no <worldbody>", self.root.line)
@@ -106,9 +122,12 @@ class _World:
         inherited = own.get("childclass", inherited)
         for child in own.children:
             place = f"line {child.line}"
-            if child.tag == "site":
+            if child.tag == "site" and child.get("fromto"):
+                self.source.leave_out(place, "site with fromto")
+            elif child.tag == "site":
                 name = child.get("name") or f"{body.name}_site{len(body.sites) + 1}"
                 body.sites[name] = body.pose.place(self._numbers(child, "pos", 3, "0 0 0"))
+                self.sites[name] = (body, child)
             elif child.tag in ("joint", "freejoint"):
                 self._add_joint(body, child, inherited)
             elif child.tag == "body":
@@ -130,6 +149,9 @@ class _World:
         body = Body(name=name, parent=parent.name, pose=pose, line=own.line)
         self.bodies.append(body)
         self._fill(body, own, inherited)
+        if body.joint is None:
+            # a rigid child is a point of its parent
+            body.sites.setdefault(name, pose.at)
 
     def _add_joint(self, body: Body, own: Element, inherited: str) -> None:
         # a class of the joint itself comes before that of its body
@@ -149,30 +171,37 @@ class _World:
         at = body.pose.place(self._numbers(own, "pos", 3, "0 0 0"))
         body.joint = BodyJoint(name=name, kind=kind, at=at, axis=axis)
         self.joints[name] = body.name
-        for key, what in (("range", "limits"), ("damping", "damping"), ("stiffness", "stiffness")):
+        for key, what in _FORCES.items():
             if own.get(key):
                 self.source.leave_out(f"line {own.line}", f"{what} of a joint")
 
     def planar(self) -> Planar:
-        """The links, with loops and inputs."""
-        equalities = list(self._equalities())
-        same: dict[str, str] = {}
-        names = {body.name for body in self.bodies}
-        for own in equalities:
-            # welds first: they decide which bodies are links
-            if own.tag == "weld":
-                one, two = (own.get(key) or GROUND for key in ("body1", "body2"))
-                if not {one, two} <= names:
-                    self.source.refuse("weld needs body1 and body2", own.line)
-                self._weld(same, one, two)
-        planar = Planar(self.source, self.root.get("model"), self.bodies, same)
+        """The links, with loops and inputs; closures that no position meets are left out."""
+        kept = list(self._equalities())
+        while True:
+            # what is noted in a trial is noted again
+            planar = self._joined(kept, Source(self.source.data, self.source.name))
+            closing = [own for own in kept if own.tag in ("weld", "connect")]
+            if not (closing and planar.contradictory()):
+                break
+            what = f"<{closing[-1].tag}> that contradicts the lengths of the links"
+            self.source.leave_out(f"line {closing[-1].line}", what)
+            kept.remove(closing[-1])
+        planar = self._joined(kept, self.source)
+        planar.measure()
+        self._drive(planar)
+        return planar
+
+    def _joined(self, equalities: list[Element], source: Source) -> Planar:
+        welds = [self._weld(own) for own in equalities if own.tag == "weld"]
+        # welds first: they decide which bodies are links
+        planar = Planar(source, self.root.get("model"), self.bodies, welds)
         for own in equalities:
             if own.tag == "connect":
-                self._connect(planar, own, names)
+                self._connect(planar, own)
             elif own.tag != "weld":
-                self.source.leave_out(f"line {own.line}", f"coupling of joints <{own.tag[:20]}>")
+                source.leave_out(f"line {own.line}", f"coupling of joints <{own.tag[:20]}>")
         planar.add_sites()
-        self._drive(planar)
         return planar
 
     def _equalities(self) -> Iterator[Element]:
@@ -183,34 +212,53 @@ class _World:
             else:
                 yield own
 
-    def _weld(self, same: dict[str, str], one: str, two: str) -> None:
-        """Make two bodies one: ground stays, otherwise the first."""
-        # chains of welds are no longer than the bodies
-        for _ in self.bodies:
-            one, two = same.get(one, one), same.get(two, two)
-        if one != two:
-            kept, lost = (two, one) if two == GROUND else (one, two)
-            same[lost] = kept
-
-    def _connect(self, planar: Planar, own: Element, names: set[str]) -> None:
+    def _weld(self, own: Element) -> Weld:
+        """The bodies of a weld, and the pose of the second."""
         if own.get("site1"):
-            sites = {n: (body.name, at) for body in self.bodies for n, at in body.sites.items()}
-            ends = [sites.get(own.get(key)) for key in ("site1", "site2")]
-            if ends[0] is None or ends[1] is None:
-                self.source.refuse("connect refers to a site that does not exist", own.line)
-            one, two, at = ends[0][0], ends[1][0], ends[0][1]
-            if abs(planar.at(at) - planar.at(ends[1][1])) > 1e-6 * planar.size:
-                self.source.leave_out(f"line {own.line}", "gap between the sites of a connect")
+            (one, _), (two, _) = sites = self._two_sites(own)
+            first, second = (
+                Pose(np.eye(3), np.zeros(3)).frame(
+                    self._numbers(e, "pos", 3, "0 0 0"), self._turn(e)
+                )
+                for _, e in sites
+            )
+            turn = one.pose.turn @ first.turn @ second.turn.T
+            pose = Pose(turn, one.pose.place(first.at) - turn @ second.at)
         else:
-            one, two = own.get("body1"), own.get("body2") or GROUND
-            if not {one, two} <= names:
-                self.source.refuse("connect needs body1 and body2, or two sites", own.line)
-            body = next(body for body in self.bodies if body.name == one)
-            at = body.pose.place(self._numbers(own, "anchor", 3, "0 0 0"))
-        if planar.link(one) == planar.link(two):
-            self.source.leave_out(f"line {own.line}", "connect inside one link")
+            one, two = self._two_bodies(own)
+            *at, w, x, y, z = self._numbers(own, "relpose", 7, "0 1 0 0 0 0 0")
+            # without a quaternion they stay as drawn
+            pose = one.pose.frame(at, quaternion(w, x, y, z)) if any((w, x, y, z)) else two.pose
+        return Weld(one=one.name, two=two.name, pose=pose, line=own.line)
+
+    def _two_sites(self, own: Element) -> list[tuple[Body, Element]]:
+        ends = [self.sites[n] for k in ("site1", "site2") if (n := own.get(k)) in self.sites]
+        if len(ends) < 2:
+            self.source.refuse(f"{own.tag} refers to a site that does not exist", own.line)
+        return ends
+
+    def _two_bodies(self, own: Element) -> list[Body]:
+        known = {body.name: body for body in self.bodies}
+        names = own.get("body1"), own.get("body2") or GROUND
+        if not set(names) <= set(known):
+            self.source.refuse(f"{own.tag} needs body1 and body2, or two sites", own.line)
+        return [known[name] for name in names]
+
+    def _connect(self, planar: Planar, own: Element) -> None:
+        if own.get("site1"):
+            names = own.get("site1"), own.get("site2")
+            ends = [
+                (body.name, body.sites[name])
+                for name, (body, _) in zip(names, self._two_sites(own), strict=True)
+            ]
         else:
-            planar.pin(own.get("name") or f"{one}_{two}", at, one, two)
+            one, two = self._two_bodies(own)
+            at = one.pose.place(self._numbers(own, "anchor", 3, "0 0 0"))
+            ends = [(one.name, at), (two.name, at)]
+        if planar.link(ends[0][0]) == planar.link(ends[1][0]):
+            planar.source.leave_out(f"line {own.line}", "connect inside one link")
+        else:
+            planar.pin(own.get("name") or f"{ends[0][0]}_{ends[1][0]}", *ends)
 
     def _drive(self, planar: Planar) -> None:
         for own in (own for each in self.root.all("actuator") for own in each.children):

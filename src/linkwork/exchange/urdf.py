@@ -35,7 +35,7 @@ def read(source: Source) -> Assembly:
     """Read the tree."""
     root = xml_tree(source.data, source, "robot")
     tree = _Tree(source, root)
-    planar = Planar(source, root.get("name"), tree.bodies, {})
+    planar = Planar(source, root.get("name"), tree.bodies)
     planar.add_sites()
     tree.drive(planar)
     return planar.assembly
@@ -106,6 +106,9 @@ class _Tree:
             body.joint = BodyJoint(name=own.get("name"), kind=_KINDS[kind], at=pose.at, axis=along)
         elif kind != "fixed":
             self.source.refuse(f'a joint of type "{kind[:20]}" is not read', own.line)
+        else:
+            # a rigid child is a point of its parent
+            body.sites[name] = pose.at
         self.bodies.append(body)
         for inner in self.links[name].children:
             if inner.tag == "inertial":

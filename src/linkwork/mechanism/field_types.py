@@ -7,10 +7,11 @@ from dataclasses import fields
 from typing import Any, TypeVar, cast
 
 from linkwork.foundation.errors import InputError, UnknownNameError, choices
+from linkwork.foundation.names import canonical
 from linkwork.foundation.plain_numbers import as_told
 from linkwork.foundation.value_types import is_listed
 
-__all__ = ["check_entries", "check_field_types", "fields_of", "made_of"]
+__all__ = ["check_entries", "check_field_types", "fields_of", "made_of", "merged"]
 
 T = TypeVar("T")
 
@@ -33,6 +34,43 @@ def fields_of(kind: type, given: Mapping[str, Any]) -> Mapping[str, Any]:
         if name not in names:
             raise UnknownNameError(f'there is no field "{name}" {choices("fields", names, name)}')
     return given
+
+
+def merged(description: Any, given: Mapping[str, Any]) -> dict[str, Any]:
+    """New fields of a description: entries of tables by name join those that it has.
+
+    An entry ``None`` removes the one of that name, an empty table all; lists replace lists.
+
+    Raises
+    ------
+    UnknownNameError
+        For a field, or an entry to be removed, that does not exist.
+    """
+    changed = dict(fields_of(type(description), given))
+    for table, new in changed.items():
+        old = getattr(description, table)
+        if isinstance(old, Mapping) and isinstance(new, Mapping) and new:
+            changed[table] = _joined(table, old, new)
+    return changed
+
+
+def _joined(table: str, old: Mapping[Any, Any], new: Mapping[Any, Any]) -> dict[Any, Any]:
+    spelled = {_folded(key): key for key in old}
+    # keys that are no texts are refused later, with the field's name
+    keys = {key: spelled.get(_folded(key), key) if isinstance(key, str) else key for key in new}
+    for key, entry in new.items():
+        if entry is None and keys[key] not in old:
+            raise UnknownNameError(f'{table} has no "{key}" {choices(table, old, str(key))}')
+    if len(set(keys.values())) < len(keys):
+        raise InputError(f"{table} has two values under one name: {', '.join(map(str, keys))}")
+    entries = {**old, **{keys[key]: entry for key, entry in new.items()}}
+    return {key: entry for key, entry in entries.items() if entry is not None}
+
+
+def _folded(key: str) -> tuple[str, ...]:
+    words = canonical(key).split()
+    # a distance has no direction, an angle has
+    return tuple(sorted(words) if len(words) == 2 else words)
 
 
 def check_field_types(description: Any) -> None:

@@ -1,4 +1,7 @@
-"""Tables as CSV: UTF-8, ``%.17g``, lower-case true and false, empty cells for missing numbers."""
+"""Tables as CSV: UTF-8, ``%.17g``, lower-case true and false, empty cells for missing numbers.
+
+Texts that a spreadsheet would calculate begin with an apostrophe.
+"""
 
 from __future__ import annotations
 
@@ -11,6 +14,10 @@ from typing import Any
 from linkwork.results.table import Table
 
 __all__ = ["csv_lines", "csv_text"]
+
+
+#: What formulas of spreadsheets begin with.
+_FORMULAS = ("=", "+", "-", "@", "\t", "\r")
 
 
 def csv_lines(table: Table) -> Iterator[str]:
@@ -40,4 +47,6 @@ def _cell(value: Any) -> str:
     if isinstance(value, float):
         # a zero has no sign in a table
         return "" if math.isnan(value) else f"{value + 0.0:.17g}"
-    return str(value)
+    text = str(value)
+    formula = isinstance(value, str) and text.startswith(_FORMULAS)
+    return f"'{text}" if formula else text

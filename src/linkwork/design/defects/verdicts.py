@@ -38,6 +38,7 @@ class DefectKind(Enum):
     TOLERANCE = "tolerance exceeded"
     OBSTACLE = "meets an obstacle"
     BOUND = "bound of a goal broken"
+    UNMOVED = "nothing improved"
     NOT_PROVED = "not proved"
 
 
@@ -50,8 +51,8 @@ class Verdicts:
     loops : DrivenLoops
     travel : Travel
     transmission : (D,)
-        A lower bound of the transmission angle over the driven range [rad]; NaN where the range is
-        not defined.
+        A lower bound of the transmission angle over the driven range [rad], 0 where rounding
+        decides about a dead point; NaN where the range is not defined.
     size : (D,)
         The longest link or distance of fixed pivots, of two guides also the longest arm [length].
     shortest : (D,)
@@ -135,7 +136,8 @@ def judge(given: Candidates, drive: Drive, wishes: Wishes) -> Verdicts:
     return Verdicts(
         loops=loops,
         travel=travel,
-        transmission=np.where(open_, transmission, np.nan),
+        # to rounding at a dead point: the least that any design has
+        transmission=np.where(open_, transmission, np.where(travel.decided, np.nan, 0.0)),
         size=size,
         shortest=shortest,
         arm=arm,

@@ -9,10 +9,11 @@ from functools import cached_property
 import numpy as np
 
 from linkwork.design.improvement.goals import Misses, PathGoal, goal_of
+from linkwork.design.improvement.kept_relations import Together
 from linkwork.design.improvement.lane_work import LaneWork
 from linkwork.design.improvement.largest_miss import largest_misses, powered
 from linkwork.design.improvement.settings import Aid, Goal
-from linkwork.design.improvement.solved_lanes import SolvedLanes
+from linkwork.design.improvement.solved_lanes import SolvedLanes, inputs_away
 from linkwork.design.improvement.trade_off import Objectives, TradeOff, told_apart
 from linkwork.design.improvement.written_designs import DesignWriter
 from linkwork.foundation.angles import FULL_TURN
@@ -26,7 +27,7 @@ from linkwork.numerics.lane_least_squares import LaneFit, Residuals, minimise, s
 from linkwork.results.motion import Motion
 from linkwork.results.quantity import Kind
 
-__all__ = ["APPROACH", "FitProblem", "FittedNumbers", "Fitting", "inputs_away"]
+__all__ = ["APPROACH", "FitProblem", "FittedNumbers", "Fitting"]
 
 _GAP = 1e-7  # between inputs of positions in order [rad or length]
 APPROACH = 4  # parts of the way from the mechanism to a start
@@ -75,18 +76,6 @@ class FittedNumbers:
     interrupted: bool
 
 
-def inputs_away(at: Array, motion: Motion, model: Model) -> Array:
-    """The distances of inputs (N,) from those of rows (R,), infinite from lost ones, (N, R)."""
-    lead = next(iter(motion.inputs))
-    table = np.asarray(motion.inputs[lead]) * float(model.input_scale[0])
-    away = np.abs(at[:, None] - table)
-    if model.equations.inputs[0].kind == Kind.ANGLE.value:
-        turned = np.abs(np.mod(away + 0.5 * FULL_TURN, FULL_TURN) - 0.5 * FULL_TURN)
-        # of rows whole turns apart the nearest: geared links differ there
-        away = turned + EQUAL_ROWS * away
-    return np.where(motion.found, away, np.inf)
-
-
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Fitting:
     """What is fitted.
@@ -101,6 +90,8 @@ class Fitting:
         Their bounds.
     path : PathGoal, optional
     goals : sequence of Goal
+    together : Together, optional
+        Numbers that change together: their sizes are fitted, and ``box`` is theirs.
     """
 
     model: Model
@@ -109,6 +100,11 @@ class Fitting:
     box: Box
     path: PathGoal | None
     goals: Sequence[Goal]
+    together: Together | None = None
+
+    def all_numbers(self, x: Array) -> Array:
+        """The numbers (D, P) of what is fitted, (D, G)."""
+        return x if self.together is None else self.together.numbers(x)
 
 
 class FitProblem:
@@ -133,7 +129,8 @@ class FitProblem:
         self.given, model, motion, path = given, given.model, given.motion, given.path
         self.model, self.motion = model, motion
         self.box, self.path, self.lanes = given.box, path, lanes
-        self.x = np.array([float(q.of(model.description)) for q in given.numbers])
+        self.numbers = np.array([float(q.of(model.description)) for q in given.numbers])
+        self.x = self.numbers if given.together is None else given.together.sizes
         lead = next(iter(motion.inputs))
         scale = float(model.input_scale[0])
         # limits between the rows of the table move with the numbers
@@ -221,7 +218,7 @@ class FitProblem:
         """Lanes at inputs, begun at the nearest rows of the mechanism's motion."""
         away = inputs_away(at, self.motion, self.model)
         q = self.motion.q[away.argmin(axis=1)]
-        return SolvedLanes(self.writer, self.x, q, at, self.lanes)
+        return SolvedLanes(self.writer, self.numbers, q, at, self.lanes)
 
     @property
     def _solvers(self) -> list[SolvedLanes]:
@@ -314,6 +311,7 @@ class FitProblem:
     ) -> Residuals:
         """All misses of designs (D, P); NaN for those of other equations."""
         power = power or self.power
+        x = self.given.all_numbers(x)
         count, parameters = x.shape
         rows, by_x = np.zeros((count, 0, 2)), np.zeros((count, 0, 2, parameters))
         by_t: Array | None = None
@@ -340,9 +338,10 @@ class FitProblem:
                 self.missed[k] = float(np.abs(own[there]).max())
             shared.append(own)
             shared_by_x.append(slopes)
-        result = Residuals(
-            rows, by_x, by_t, np.concatenate(shared, axis=1), np.concatenate(shared_by_x, axis=1)
-        )
+        slopes = np.concatenate(shared_by_x, axis=1)
+        if self.given.together is not None:
+            by_x, slopes = (own @ self.given.together.slopes for own in (by_x, slopes))
+        result = Residuals(rows, by_x, by_t, np.concatenate(shared, axis=1), slopes)
         if self.trade is not None:
             result = self.trade.applied(result, lanes)
         if power > 1:
@@ -380,7 +379,7 @@ class FitProblem:
         if timed and self.path is not None:
             t = np.array(np.broadcast_to(self.path.inputs, (len(fit), len(self.path.places))))
         return FittedNumbers(
-            x=fit.x,
+            x=self.given.all_numbers(fit.x),
             t=t,
             total=np.where(np.isfinite(fit.total), there.total, np.inf),
             largest=largest_misses(there, self.counted),

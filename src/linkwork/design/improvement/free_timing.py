@@ -8,20 +8,23 @@ from dataclasses import replace
 import numpy as np
 
 from linkwork.design.improvement.goals import PathGoal
+from linkwork.design.improvement.settings import Points
 from linkwork.foundation.angles import FULL_TURN
 from linkwork.foundation.arrays import Array, ComplexArray
+from linkwork.foundation.errors import InputError, UnknownNameError, choices
+from linkwork.foundation.names import find_spelling
 from linkwork.foundation.rounding import EQUAL_ROWS
 from linkwork.motion.model import Model
 from linkwork.results.motion import Motion
 from linkwork.results.quantity import Kind
 
-__all__ = ["freely_timed"]
+__all__ = ["paths_of", "point_named"]
 
 _SHARES = (0.1, 0.25, 0.5, 0.75, 1.0)  # of the path's length, for points along a part of it
 _SHIFTS = 36  # of the first point along the path
 
 
-def freely_timed(
+def _freely_timed(
     model: Model, motion: Motion, point: str, places: ComplexArray, ordered: bool
 ) -> tuple[PathGoal, ...]:
     """Goals with free timing, with inputs at which the mechanism as it is comes near the points.
@@ -70,3 +73,32 @@ def _matches(
             low = where.astype(int)
             high = np.minimum(low + 1, len(at) - 1)
             yield inputs, path[low] + (where - low) * (path[high] - path[low])
+
+
+def point_named(model: Model, name: str) -> str:
+    """A point as the mechanism spells it.
+
+    Raises
+    ------
+    UnknownNameError
+        If there is none.
+    """
+    spelled = find_spelling(name, model.equations.points)
+    if spelled not in model.equations.points:
+        known = choices("points", model.equations.points, name)
+        raise UnknownNameError(f'there is no point "{name}" {known}')
+    return spelled
+
+
+def paths_of(model: Model, motion: Motion, goal: Points) -> tuple[PathGoal, ...]:
+    """The path through points, one for each way to time them."""
+    description = model.description
+    name = goal.point or next(iter(description.trace), None)
+    if name is None:
+        raise InputError(f'"{description.name}" traces no point: name one, point = "P"')
+    spelled = point_named(model, name)
+    places = np.array([complex(*place) for place in goal.points])
+    if goal.inputs is None:
+        return _freely_timed(model, motion, spelled, places, goal.order != "any")
+    inputs = np.asarray(goal.inputs, dtype=float) * float(model.input_scale[0])
+    return (PathGoal(point=spelled, places=places, inputs=inputs, timed=True, ordered=True),)

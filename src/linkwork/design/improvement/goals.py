@@ -25,8 +25,10 @@ from linkwork.expression.tree import Node, names_in
 from linkwork.foundation.angles import FULL_TURN
 from linkwork.foundation.arrays import AnyArray, Array, BoolArray, ComplexArray
 from linkwork.foundation.errors import InputError, UnknownNameError
+from linkwork.foundation.rounding import EQUAL_ROWS
 from linkwork.motion.model import Model
 from linkwork.results.quantities.asked import Asked, AskedOfMotion, Group
+from linkwork.results.quantities.definition import RowSlopes
 from linkwork.results.quantities.index import MOTION_QUANTITIES
 from linkwork.results.quantities.transmission import TRANSMISSION_ANGLE
 from linkwork.results.quantity import Kind
@@ -41,6 +43,7 @@ _OF_FORMULA = re.compile(
 )
 _NUMBER = "number_{}_of_the_motion"
 _ZERO = np.zeros(())
+_TILT = 4.0 * EQUAL_ROWS
 _STIFF = 100.0  # weight of bounds: their shifts converge faster
 _MARGIN = 1e-7  # relative: by which bounds hold in the end
 _NONE = 1e-2  # of this margin: rounding
@@ -312,7 +315,7 @@ class _NumberMisses(Misses):
         weights: list[AnyArray] = [np.zeros(shape, dtype=part.dtype) for part in plain]
         for k in np.flatnonzero(np.isfinite(numbers)):
             own = [part[k] for part in (*plain, *lost)]
-            slopes = asked.quantity.slopes(asked.rows(self.at, *own), asked.numbers)
+            slopes = _one_sided_slopes(asked, self.at, *own)
             for weight, part in zip(
                 weights, (slopes.value, slopes.first, slopes.second), strict=False
             ):
@@ -324,6 +327,22 @@ class _NumberMisses(Misses):
         # rows of no weight may have no derivative
         used = np.any([weight != 0.0 for weight in weights], axis=0)
         return numbers, np.where(used[:, :, None], by_x, 0.0).sum(axis=1)
+
+
+def _one_sided_slopes(
+    asked: AskedOfMotion, at: Array, value: AnyArray, *rates: AnyArray
+) -> RowSlopes:
+    """The derivatives of a number by its rows; where equal extremes have none, those of the last.
+
+    A fit needs a direction: symmetric motions have equal extremes at both ends.
+    """
+    slopes = asked.quantity.slopes(asked.rows(at, value, *rates), asked.numbers)
+    parts = (slopes.value, slopes.first, slopes.second)
+    if all(np.isfinite(part).all() for part in parts):
+        return slopes
+    # just more than what counts as equal from row to row
+    tilt = _TILT * np.nanmax(np.abs(value)) * np.arange(len(value))
+    return asked.quantity.slopes(asked.rows(at, value + tilt, *rates), asked.numbers)
 
 
 def _is_transmission(model: Model, text: str) -> bool:

@@ -44,6 +44,10 @@ class ImprovedDesign:
         without its weight [file units].
     broken : tuple of str
         The bounds of goals that it breaks, in words.
+    near_dead : str
+        That it all but reaches a dead point, in words; else empty.
+    unmoved : str
+        Why it is the mechanism as it was, whose goals are missed; else empty.
     motion : Motion, optional
         Its table with the proofs; ``None`` if it has no position.
     whole_motion : MotionBounds, optional
@@ -69,6 +73,8 @@ class ImprovedDesign:
     misses: tuple[float, ...] = ()
     goals: Mapping[str, float] = field(default_factory=dict)
     broken: tuple[str, ...] = ()
+    near_dead: str = ""
+    unmoved: str = ""
     motion: Motion | None = None
     whole_motion: MotionBounds | None = None
 

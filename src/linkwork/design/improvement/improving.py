@@ -4,32 +4,32 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import partial
 
 import numpy as np
 
 from linkwork.design.derivatives.differentiable_numbers import chosen_numbers
 from linkwork.design.improvement.fit_problem import FittedNumbers, Fitting
-from linkwork.design.improvement.free_timing import freely_timed
+from linkwork.design.improvement.free_timing import paths_of
 from linkwork.design.improvement.front_designs import front_designs
 from linkwork.design.improvement.front_fit import fit_front
 from linkwork.design.improvement.goals import PathGoal
 from linkwork.design.improvement.improved_design import ImprovedDesign
-from linkwork.design.improvement.mechanism_fit import fit_numbers
+from linkwork.design.improvement.kept_relations import Together, kept_relations
+from linkwork.design.improvement.mechanism_fit import fit_numbers, misses_before
 from linkwork.design.improvement.motion_bounds import least_in_rows
 from linkwork.design.improvement.proved_design import fitted_design, interrupted_design
 from linkwork.design.improvement.settings import Aid, Goal, Improvement, Points
+from linkwork.design.improvement.spread_starts import STARTS, spread_starts
 from linkwork.design.improvement.written_designs import DesignWriter
 from linkwork.foundation.arrays import Array
 from linkwork.foundation.errors import (
     InputError,
     MechanismError,
     Problem,
-    UnknownNameError,
-    choices,
 )
-from linkwork.foundation.names import GROUND, find_spelling
+from linkwork.foundation.names import GROUND
 from linkwork.foundation.operand import NotElementwise
 from linkwork.mechanism.draft import Draft
 from linkwork.mechanism.varied_number import VariedNumber, number_named
@@ -45,15 +45,14 @@ __all__ = [
     "box_of",
     "improved_designs",
     "numbers_to_vary",
-    "point_named",
     "transmission_goals",
 ]
 
-STARTS = 16
 FACTOR = 4.0  # by which lengths may change, unless bounds are given
 _SEARCH = 0.9  # share of the search in the work; the rest is proofs
 _FAR = 2.0  # longest numbers or links, by which others may change
 _FIRST = 0.6  # share of the first search, if starts may have to be led again
+_AGAIN, _RELATED = 0.2, 0.1  # of starts led again, and of each kind of relation after that
 _OFF = math.radians(0.25)  # dead points: starts that lead to one are led again, so far from all
 # near a number that a goal does not depend on, such as a rod's length in a stroke without offset,
 # all steps would fail that move it by its effect alone
@@ -91,11 +90,12 @@ def improved_designs(
     if not numbers:
         raise InputError(f'"{model.description.name}" has no number that can vary alone')
     box = box_of(model, numbers, settings)
-    starts = box.inside(_starts(model, numbers, settings))
+    starts = box.inside(spread_starts(model, numbers, settings))
     search = _Search(model, numbers, box, points, settings, is_sound, enough, progress)
     held = {goal.of for goal in others}
     kept_off = [goal for goal in transmission_goals(model, _OFF) if goal.of not in held]
-    search.share = _FIRST if kept_off and not settings.front else 1.0
+    one = bool(settings.front or (points and not kept_off))
+    search.share = 1.0 if one else _FIRST
     try:
         fits = search.fits(others, starts)
     except NotElementwise:
@@ -107,7 +107,7 @@ def improved_designs(
     designs = search.proved(fits, range(len(starts)), [])
     locked = [k for k, own in designs if _locks(own)]
     if locked and kept_off and not search.interrupted:
-        search.begin, search.share = _FIRST, 1.0 - _FIRST
+        search.begin, search.share = _FIRST, 1.0 - _FIRST if points else _AGAIN
         known = [own for own in designs if own[1].sound or own[0] not in locked]
         led = known
         try:
@@ -118,17 +118,30 @@ def improved_designs(
         # starts that cannot be kept off, or are not led again, keep their designs
         again = {k for k, _ in led}
         designs = led + [own for own in designs if own not in known and own[0] not in again]
+    # relations are what fits break that lose starts, lock or do not move
+    hampered = search.lost or any(_locks(own) or search.moved(own).unmoved for _, own in designs)
+    reached = points or search.interrupted or any(_is_reached(own) for _, own in designs)
+    if hampered and not reached:
+        designs = search.related(others, designs, len(starts))
     if search.interrupted and not designs:
         raise KeyboardInterrupt
-    found = [interrupted_design(own) if search.interrupted else own for _, own in designs]
+    told = interrupted_design if search.interrupted else search.moved
+    found = [told(own) for _, own in designs]
     return tuple(sorted(found, key=partial(_rank, settings)))
+
+
+def _is_reached(design: ImprovedDesign) -> bool:
+    """Whether a sound design has no miss that a person would see."""
+    sizes = [abs(float(x)) for x in design.numbers.values()]
+    return design.sound and design.largest <= _EQUAL_NUMBERS * max(sizes, default=1.0)
 
 
 def _locks(design: ImprovedDesign) -> bool:
     """Whether a design comes to a dead point."""
-    motion = design.motion
-    if motion is None:
-        return False
+    return design.motion is not None and _is_locked(design.motion)
+
+
+def _is_locked(motion: Motion) -> bool:
     return not motion.found.all() or least_in_rows(motion) * motion.units.angle.radians < _OFF
 
 
@@ -151,9 +164,13 @@ class _Search:
     is_sound: Callable[[ImprovedDesign], bool]
     enough: int | None
     progress: Callable[[float], None] | None
+    together: Together | None = None
     begin: float = 0.0
     share: float = 1.0
     interrupted: bool = False
+    begun: int = 0
+    lost: int = 0
+    before: float = math.inf
 
     def tell(self, fraction: float) -> None:
         """A fraction of this search is done."""
@@ -166,7 +183,7 @@ class _Search:
         motion = sweep(model, certify=False)
         if not motion.found.any():
             raise InputError(f'"{model.description.name}" has no position: improve one that moves')
-        paths = _paths(model, motion, self.points) if self.points else (None,)
+        paths = paths_of(model, motion, self.points) if self.points else (None,)
         fits: list[_Fit] = []
         for part, path in enumerate(paths):
 
@@ -180,16 +197,48 @@ class _Search:
                 box=self.box,
                 path=path,
                 goals=goals,
+                together=self.together,
             )
+            if path is None and not settings.front and not _is_locked(motion):
+                self.before = misses_before(given, minimax=settings.fit == "minimax")
             if settings.front:
                 found = fit_front(given, starts, settings.front, progress=told)
             else:
                 found = fit_numbers(given, starts, minimax=settings.fit == "minimax", progress=told)
             fits.append((path, found))
+            self.begun += len(starts)
+            self.lost += len(starts) - int(np.isfinite(found.total).sum())
             self.interrupted |= found.interrupted
             if self.interrupted:
                 break
         return fits
+
+    def related(
+        self, goals: Sequence[Goal], known: list[tuple[int, ImprovedDesign]], count: int
+    ) -> list[tuple[int, ImprovedDesign]]:
+        """Known designs, and those whose numbers keep the relations of the mechanism.
+
+        ``count``: so many starts for each kind of relation.
+        """
+        own = self.numbers, self.box, self.together
+        motion = sweep(self.model, certify=False)
+        rng = np.random.default_rng(self.settings.seed)
+        for k, together in enumerate(kept_relations(self.model, motion, self.numbers)):
+            self.begin, self.share = _FIRST + _AGAIN + k * _RELATED, _RELATED
+            self.together, self.box = together, together.box(own[1])
+            spread = self.settings.spread * rng.uniform(-1.0, 1.0, (count, len(together.sizes)))
+            spread[0] = 0.0
+            starts = self.box.inside(together.sizes * (1.0 + spread))
+            try:
+                known = self.proved(self.fits(goals, starts), [-1] * count, known)
+            except MechanismError:  # a goal changes with none of these sizes
+                continue
+            except KeyboardInterrupt:
+                self.interrupted = True
+            if self.interrupted or any(_is_reached(design) for _, design in known):
+                break
+        _, self.box, self.together = own
+        return known
 
     def proved(
         self,
@@ -221,6 +270,22 @@ class _Search:
             self.interrupted = True
         return designs
 
+    def moved(self, design: ImprovedDesign) -> ImprovedDesign:
+        """A design; one that misses its goals as the mechanism did is no improvement."""
+        x = np.array([float(q.of(self.model.description)) for q in self.numbers])
+        misses = design.largest if self.settings.fit == "minimax" else design.total
+        still = _is_known(x, [design]) or misses >= self.before * (1.0 - _EQUAL_NUMBERS)
+        if not still or _is_reached(replace(design, sound=True)):
+            return design
+        told = "nothing improved: the mechanism as it was is no farther from its goals; "
+        if self.lost:
+            told += f"{self.lost} of {self.begun} starts have no position on its branch"
+        else:
+            told += "no small change of those that vary brings its goals nearer"
+        if design.goals:
+            told += f", which miss {', '.join(f'{n} by {m:.4g}' for n, m in design.goals.items())}"
+        return replace(design, sound=False, unmoved=told, message=f"{design.message}; {told}")
+
     def tell_proofs(self, fraction: float) -> None:
         """A fraction of the proofs is done; an interruption of the telling does not end them."""
         if not self.interrupted:
@@ -230,18 +295,6 @@ class _Search:
                 self.interrupted = True
 
 
-def _starts(model: Model, numbers: Sequence[VariedNumber], settings: Improvement) -> Array:
-    """Numbers (D, P) around those of the mechanism, its own first."""
-    x = np.array([float(q.of(model.description)) for q in numbers])
-    rng = np.random.default_rng(settings.seed)
-    count = settings.starts or STARTS
-    # a number of 0 spreads by the size of what it measures
-    sizes = np.where(x == 0.0, _sizes(model, numbers, x), x)
-    starts = x + settings.spread * sizes * rng.uniform(-1.0, 1.0, (count, len(x)))
-    starts[0] = x
-    return starts
-
-
 def transmission_goals(model: Model, least: float) -> Iterator[Aid]:
     """A least transmission angle of all dyads, as bounds in all rows [rad]."""
     angle = model.description.angle
@@ -249,21 +302,6 @@ def transmission_goals(model: Model, least: float) -> Iterator[Aid]:
     for name, asked in model.quantities.derived.items():
         if asked.row is TRANSMISSION_ANGLE:
             yield Aid(of=name, least=bound, most=angle.turn / 2.0 - bound)
-
-
-def _sizes(model: Model, numbers: Sequence[VariedNumber], x: Array) -> Array:
-    """Sizes of what numbers (P,) measure: a radian, or the longest link or distance of points."""
-    description = model.description
-    # of dimensions the kind is not known
-    largest = float(np.abs(x[[q.table != "angles" for q in numbers]]).max(initial=0.0))
-    size = largest or 1.0
-    if isinstance(description, Draft):
-        lengths = [float(description.numbers(length)) for length in description.lengths.values()]
-        places = [[float(description.numbers(c)) for c in p] for p in description.points.values()]
-        spans = np.ptp(places, axis=0) if places else np.zeros(2)
-        size = max(lengths, default=0.0) or float(spans.max()) or size
-    radian = description.angle.from_radians(1.0)
-    return np.array([radian if q.table == "angles" else size for q in numbers])
 
 
 def _check(settings: Improvement, goals: Sequence[Goal | Points]) -> None:
@@ -336,34 +374,6 @@ def box_of(model: Model, numbers: Sequence[VariedNumber], settings: Improvement)
         k = numbers.index(number)
         least[k], most[k] = low, high
     return Box(least=least, most=most, least_effect=_LEAST_EFFECT)
-
-
-def point_named(model: Model, name: str) -> str:
-    """A point as the mechanism spells it.
-
-    Raises
-    ------
-    UnknownNameError
-        If there is none.
-    """
-    spelled = find_spelling(name, model.equations.points)
-    if spelled not in model.equations.points:
-        known = choices("points", model.equations.points, name)
-        raise UnknownNameError(f'there is no point "{name}" {known}')
-    return spelled
-
-
-def _paths(model: Model, motion: Motion, goal: Points) -> tuple[PathGoal, ...]:
-    description = model.description
-    name = goal.point or next(iter(description.trace), None)
-    if name is None:
-        raise InputError(f'"{description.name}" traces no point: name one, point = "P"')
-    spelled = point_named(model, name)
-    places = np.array([complex(*place) for place in goal.points])
-    if goal.inputs is None:
-        return freely_timed(model, motion, spelled, places, goal.order != "any")
-    inputs = np.asarray(goal.inputs, dtype=float) * float(model.input_scale[0])
-    return (PathGoal(point=spelled, places=places, inputs=inputs, timed=True, ordered=True),)
 
 
 def _unfollowed(model: Model, numbers: Sequence[VariedNumber]) -> str:

@@ -6,18 +6,18 @@ from collections.abc import Callable, Sequence
 
 import numpy as np
 
-from linkwork.design.improvement.fit_problem import FitProblem, FittedNumbers, Fitting, inputs_away
+from linkwork.design.improvement.fit_problem import FitProblem, FittedNumbers, Fitting
 from linkwork.design.improvement.goals import PathGoal
 from linkwork.design.improvement.largest_miss import POWERS
 from linkwork.design.improvement.moved_goals import check_moved
-from linkwork.design.improvement.solved_lanes import SolvedLanes
+from linkwork.design.improvement.solved_lanes import SolvedLanes, inputs_away
 from linkwork.design.improvement.written_designs import DesignWriter
 from linkwork.foundation.arrays import Array
 from linkwork.mechanism.varied_number import VariedNumber
 from linkwork.motion.model import Model
 from linkwork.results.motion import Motion
 
-__all__ = ["fit_numbers", "path_misses"]
+__all__ = ["fit_numbers", "misses_before", "path_misses"]
 
 _STEPS = (60, 200, 200)  # of all lanes, then of the better half
 _BOUND_STEPS = (60,) * 7  # the same; after each the shifts of bounds change
@@ -76,3 +76,11 @@ def path_misses(
     place = found.rows.place(path.point).v
     value = found.values([place.real, place.imag])[0][0]
     return np.asarray(np.abs(value[:, 0] + 1j * value[:, 1] - path.places))
+
+
+def misses_before(given: Fitting, *, minimax: bool) -> float:
+    """What a fit makes small, of the mechanism as it is; infinite if it breaks a bound."""
+    problem = FitProblem(given, 1)
+    now = problem.result(problem.reached(problem.begun(problem.x[None]), np.arange(1)))
+    kept = now.broken[0] == 0.0 and not now.beyond.any()
+    return float((now.largest if minimax else now.total)[0]) if kept else np.inf

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Protocol
@@ -13,7 +14,11 @@ from linkwork.mechanism.dyad import Dyad
 from linkwork.results.motion import Motion
 from linkwork.results.quantities.transmission import TRANSMISSION_ANGLE
 
-__all__ = ["Contact", "LeastAngle", "MotionBounds", "least_in_rows"]
+__all__ = ["Contact", "LeastAngle", "MotionBounds", "least_in_rows", "nearly_dead"]
+
+#: Below this least transmission angle a design is at a dead point, for all that play allows.
+_DEAD = math.radians(0.1)
+_LOOKED_AT = math.radians(5.0)  # least angles of rows, between which a smaller one may be
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -67,3 +72,24 @@ def least_in_rows(motion: Motion) -> float:
     # 40° and 140° transmit equally well
     rows = [np.minimum(own, half - own) for own in (motion[n][motion.found] for n in names)]
     return min((float(own.min()) for own in rows if len(own)), default=float("nan"))
+
+
+def nearly_dead(motion: Motion, whole: MotionBounds | None) -> str:
+    """That a motion all but reaches a dead point, in words; "" if its transmission angles are not
+    that small.
+    """
+    unit = motion.units.angle
+    least, place = least_in_rows(motion) * unit.radians, ""
+    if whole is not None and whole.dyads and least < _LOOKED_AT:
+        found = whole.least_transmission(_DEAD)
+        lead = motion.quantities.names.lead
+        # where smaller angles are not excluded, they count
+        least, place = found.low, f" near {lead} = {found.at:.6g} {motion.input_units[lead]}"
+        least = found.high if found.high < _DEAD else least
+    if not least < _DEAD:
+        return ""
+    shown = f"{unit.from_radians(least):.2g}{unit.sign}"
+    told = (
+        f"{shown} or less is not excluded" if place and found.high >= _DEAD else f"down to {shown}"
+    )
+    return f"nearly a dead point: transmission angle {told}{place}"

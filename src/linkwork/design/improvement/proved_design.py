@@ -11,6 +11,7 @@ from linkwork.design.improvement.fit_problem import FittedNumbers
 from linkwork.design.improvement.goals import PathGoal
 from linkwork.design.improvement.improved_design import ImprovedDesign
 from linkwork.design.improvement.mechanism_fit import path_misses
+from linkwork.design.improvement.motion_bounds import nearly_dead
 from linkwork.design.improvement.whole_motion import WholeMotion
 from linkwork.foundation.arrays import Array
 from linkwork.foundation.errors import LinkworkError
@@ -80,19 +81,21 @@ def proved_design(
 
     ``numbers``: those that were found; ``told``: the beginning of the message.
     """
-    motion = whole = None
+    motion, whole, near_dead = None, None, ""
     try:
         model = model_of(description)
         motion = sweep(model)
         whole = WholeMotion.of(model, motion)
         lost = int(np.count_nonzero(~motion.certified))
         end = branch_end(motion)
-        sound = not lost and end is None
+        near_dead = "" if lost or end is not None else nearly_dead(motion, whole)
+        sound = not (lost or end is not None or near_dead)
         told += f"{lost} of {len(motion)} rows are not proved" if lost else "all rows are proved"
         if end is not None:
             lead = next(iter(motion.inputs))
             told += f"; the branch ends at the {end.kind.word} "
             told += end.told(lead, motion.input_units[lead])
+        told += f"; {near_dead}" if near_dead else ""
     except LinkworkError as error:
         sound, told = False, f"{told}{error}"
     return ImprovedDesign(
@@ -103,6 +106,7 @@ def proved_design(
         rms=0.0,
         sound=sound,
         message=told,
+        near_dead=near_dead,
         motion=motion,
         whole_motion=whole,
     )

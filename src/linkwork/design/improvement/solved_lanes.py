@@ -18,11 +18,14 @@ from linkwork.design.improvement.lane_rows import LaneEquations, LaneRows
 from linkwork.design.improvement.written_designs import DesignWriter, WrittenDesigns
 from linkwork.foundation.angles import FULL_TURN
 from linkwork.foundation.arrays import AnyArray, Array, BoolArray, IndexArray
+from linkwork.foundation.rounding import EQUAL_ROWS
 from linkwork.foundation.stacked_systems import inverses, solutions
 from linkwork.motion.leading_input import leading_input
+from linkwork.motion.model import Model
+from linkwork.results.motion import Motion
 from linkwork.results.quantity import Kind
 
-__all__ = ["LanePositions", "SolvedLanes"]
+__all__ = ["LanePositions", "SolvedLanes", "inputs_away"]
 
 _NEWTON_STEPS = 8
 _CLOSED = 1e-13  # scaled residuals that count as solved, and steps that end
@@ -83,6 +86,18 @@ class LanePositions:
         """The values of a column of rows, (D, N); NaN where there is no position."""
         values = np.broadcast_to(getattr(column, "values", column), len(self.found))
         return np.where(self.found, values, np.nan).reshape(self.shape)
+
+
+def inputs_away(at: Array, motion: Motion, model: Model) -> Array:
+    """The distances of inputs (N,) from those of rows (R,), infinite from lost ones, (N, R)."""
+    lead = next(iter(motion.inputs))
+    table = np.asarray(motion.inputs[lead]) * float(model.input_scale[0])
+    away = np.abs(at[:, None] - table)
+    if model.equations.inputs[0].kind == Kind.ANGLE.value:
+        turned = np.abs(np.mod(away + 0.5 * FULL_TURN, FULL_TURN) - 0.5 * FULL_TURN)
+        # of rows whole turns apart the nearest: geared links differ there
+        away = turned + EQUAL_ROWS * away
+    return np.where(motion.found, away, np.inf)
 
 
 class SolvedLanes:

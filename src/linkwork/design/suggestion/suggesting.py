@@ -10,7 +10,8 @@ import numpy as np
 
 from linkwork.design.atlas.path_atlas import Nearest, read_atlas
 from linkwork.design.atlas.placed_mechanism import placed_on_curve
-from linkwork.design.improvement.improving import numbers_to_vary, point_named
+from linkwork.design.improvement.free_timing import point_named
+from linkwork.design.improvement.improving import numbers_to_vary
 from linkwork.design.improvement.proved_design import proved_design
 from linkwork.design.improvement.settings import Improvement
 from linkwork.design.loops.candidates import Drive

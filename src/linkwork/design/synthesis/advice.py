@@ -21,7 +21,7 @@ __all__ = ["advice_of", "near_misses", "remark_on", "remarks_on"]
 
 #: Handbooks ask for 40 deg or more; below 30 deg friction jams many mechanisms.
 _LEAST_TRANSMISSION = 30.0  # [deg]
-_MISSED = 0.01  # of what is wanted: a goal that is not met
+_MISSED = 1e-6  # of what is wanted: a goal that is not met
 _AT_BOUND = 0.999  # of the longest link
 _MOVING = (DefectKind.CIRCUIT, DefectKind.BRANCH, DefectKind.ORDER)
 
@@ -106,6 +106,11 @@ def advice_of(found: Synthesis) -> str:
     if found.task.kind == "improve":
         if not found.designs:
             return _of_goals(found)
+        unmoved = [own for own in found.designs if own.kinds == (DefectKind.UNMOVED,)]
+        if unmoved:
+            return (
+                f"{unmoved[0].defects[0].message[:1].upper()}{unmoved[0].defects[0].message[1:]}."
+            )
         settings = found.task.improvement
         wider = ", wider bounds" if settings is not None and settings.bounds else ""
         told = (

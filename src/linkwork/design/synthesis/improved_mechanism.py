@@ -218,6 +218,10 @@ class ImprovedMechanism(SweptDesign):
         elif not motion.certified.all():
             unproved = int(np.count_nonzero(~motion.certified))
             yield DefectKind.NOT_PROVED, f"{unproved} of {len(motion)} rows are not proved"
+        if self.improved.near_dead:
+            yield DefectKind.RANGE, self.improved.near_dead
+        if self.improved.unmoved:
+            yield DefectKind.UNMOVED, self.improved.unmoved
         yield from self._out_of_range(motion)
         misses = np.array(self.improved.misses)
         for k in np.flatnonzero(~np.isfinite(misses))[:1]:

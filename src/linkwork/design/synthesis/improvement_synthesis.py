@@ -12,6 +12,7 @@ import numpy as np
 
 from linkwork.design.derivatives.differentiable_numbers import chosen_numbers
 from linkwork.design.improvement.curve_constraints import ANGLE_MARGIN
+from linkwork.design.improvement.free_timing import point_named
 from linkwork.design.improvement.goals import goal_of
 from linkwork.design.improvement.improved_design import ImprovedDesign
 from linkwork.design.improvement.improving import (
@@ -20,7 +21,6 @@ from linkwork.design.improvement.improving import (
     box_of,
     improved_designs,
     numbers_to_vary,
-    point_named,
     transmission_goals,
 )
 from linkwork.design.improvement.reach import Reach

@@ -8,7 +8,7 @@ from linkwork.export.plates import packages
 from linkwork.export.plates.dxf import dxf_of
 from linkwork.export.plates.placing import assembled, in_rows
 from linkwork.export.plates.plate import PlateStack
-from linkwork.export.plates.solids import mesh_of, stl_of, three_mf_of
+from linkwork.export.plates.solids import mesh_of, separate_stl_of, stl_of, three_mf_of
 from linkwork.export.plates.step import step_of
 from linkwork.export.plates.svg import svg_of
 from linkwork.foundation.paths import suffix_of
@@ -66,7 +66,7 @@ def plates_of(stack: PlateStack, file: Path, *, layout: bool = False) -> bytes:
         case ".step":
             return step_of(stack.mechanism, placed, thickness)
     meshes = [mesh_of(item, thickness) for item in placed]
-    if suffix == ".stl":
-        return stl_of(meshes)
-    names = [item.name for item in placed]
-    return three_mf_of(list(zip(names, meshes, strict=True)))
+    named = list(zip([item.name for item in placed], meshes, strict=True))
+    if suffix == ".3mf":
+        return three_mf_of(named)
+    return stl_of(meshes) if layout else separate_stl_of(named)

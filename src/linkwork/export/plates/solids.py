@@ -15,7 +15,7 @@ from linkwork.export.plates.packages import shapely
 from linkwork.export.plates.placing import PlacedPlate
 from linkwork.foundation.arrays import Array, IndexArray
 
-__all__ = ["Mesh", "mesh_of", "stl_of", "three_mf_of"]
+__all__ = ["Mesh", "mesh_of", "separate_stl_of", "stl_of", "three_mf_of"]
 
 _HEADER = b"Linkwork plates, millimetres".ljust(80)
 _FIRST_DAY = (1980, 1, 1, 0, 0, 0)  # of ZIP files: the same plates give the same bytes
@@ -82,7 +82,7 @@ def mesh_of(item: PlacedPlate, thickness: float) -> Mesh:
 
 
 def stl_of(meshes: Sequence[Mesh]) -> bytes:
-    """All solids in one binary STL file."""
+    """All solids in one binary STL file, which does not separate solids that touch."""
     found = [_HEADER, struct.pack("<I", sum(len(mesh.triangles) for mesh in meshes))]
     for mesh in meshes:
         corners = mesh.corners[mesh.triangles]
@@ -92,6 +92,23 @@ def stl_of(meshes: Sequence[Mesh]) -> bytes:
         rows["numbers"] = np.concatenate([normal, corners.reshape(-1, 9)], axis=1)
         found.append(rows.tobytes())
     return b"".join(found)
+
+
+def separate_stl_of(named: Sequence[tuple[str, Mesh]]) -> bytes:
+    """A text STL file with one named solid for each plate, however they touch."""
+    lines = []
+    for name, mesh in named:
+        # readers expect one line of ASCII
+        plain = " ".join(name.encode("ascii", "replace").decode().split())
+        lines.append(f"solid {plain}")
+        for corners in mesh.corners[mesh.triangles] + 0.0:
+            normal = np.cross(corners[1] - corners[0], corners[2] - corners[0])
+            x, y, z = (normal / np.linalg.norm(normal) + 0.0).tolist()
+            lines += [f"facet normal {x:.6g} {y:.6g} {z:.6g}", "outer loop"]
+            lines += [f"vertex {x:.9g} {y:.9g} {z:.9g}" for x, y, z in corners.tolist()]
+            lines += ["endloop", "endfacet"]
+        lines.append(f"endsolid {plain}")
+    return "\n".join([*lines, ""]).encode()
 
 
 def three_mf_of(named: Sequence[tuple[str, Mesh]]) -> bytes:

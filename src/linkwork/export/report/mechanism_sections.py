@@ -72,7 +72,8 @@ def drawing(found: Findings, template: Template) -> Iterator[Block]:
     """The position with its dimensions, and the paths of traced points."""
     options = SceneOptions(dimensions=True, title="")
     scene = scene_of(found.position, found.motion, options=options)
-    where = inputs_text(found.position.input, found.position.input_units)
+    hidden = any("input" in question.hide for question in found.model.description.questions)
+    where = "" if hidden else inputs_text(found.position.input, found.position.input_units)
     traced_points = found.motion is not None and found.motion.skeleton.traced
     paths = ", with the paths of traced points" if traced_points else ""
     caption = (

@@ -49,9 +49,12 @@ def mjcf_of(robot: Robot) -> str:
         for point, place in robot.points(joint.child).items():
             _site(body, joint.child, point, place)
     _constraints(root, robot)
-    leading = robot.leading() if robot.linkage.inputs else None
-    if leading is not None:
-        element(element(root, "actuator"), "motor", name="input", joint=leading.name)
+    driven = {name: joint for name, joint in robot.driven().items() if joint is not None}
+    if driven:
+        motors = element(root, "actuator")
+        for name, joint in driven.items():
+            own = "input" if len(robot.linkage.inputs) == 1 else f"input:{name}"
+            element(motors, "motor", name=own, joint=joint.name)
     return written(root, robot.notes())
 
 

@@ -169,17 +169,27 @@ class Robot:
         slides = {j.name for j in self.tree.joints if j.edge.kind is PairKind.SLIDE}
         return 1.0 / self.metre if name in slides else 1.0
 
+    def driven(self) -> dict[str, TreeJoint | None]:
+        """The joint of the tree that each input drives, by the input's quantity, the leading first.
+
+        ``None`` for an angle between bodies that no joint of the tree connects.
+        """
+        names = self.model.motion_quantities.names
+        pairs = self.tree.graph.driven()
+        found: dict[str, TreeJoint | None] = {}
+        for k, (quantity, which) in enumerate(zip(names.inputs, self.linkage.inputs, strict=True)):
+            kind, name = which.drives
+            if kind in ("slider", "cylinder"):
+                own = (j for j in self.tree.joints if j.edge.name == name)
+            else:
+                pins = (j for j in self.tree.joints if j.edge.kind is PairKind.PIN)
+                own = (j for j in pins if pairs.get(frozenset((j.parent, j.child))) == k)
+            found[quantity] = next(own, None)
+        return dict(sorted(found.items(), key=lambda item: item[0] != names.lead))
+
     def leading(self) -> TreeJoint | None:
         """The joint of the tree that the leading input drives."""
-        names = self.model.motion_quantities.names
-        which = self.linkage.inputs[list(names.inputs).index(names.lead)]
-        kind, name = which.drives
-        if kind in ("slider", "cylinder"):
-            return next((j for j in self.tree.joints if j.edge.name == name), None)
-        pairs = self.tree.graph.driven()
-        k = self.linkage.inputs.index(which)
-        own = (j for j in self.tree.joints if j.edge.kind is PairKind.PIN)
-        return next((j for j in own if pairs.get(frozenset((j.parent, j.child))) == k), None)
+        return next(iter(self.driven().values()))
 
     def notes(self) -> list[str]:
         """What a reader of the file has to know."""
@@ -199,6 +209,9 @@ class Robot:
             )
         if self.linkage.gravity is None:
             lines.append("No gravity.")
+        free = [quantity for quantity, joint in self.driven().items() if joint is None]
+        if free:
+            lines.append(f"Not driven, between bodies without a common joint: {', '.join(free)}.")
         left = {type(part).title.lower() for part in self.linkage.parts if part.acts}
         if left:
             lines.append(f"Not written: {', '.join(sorted(left))}.")

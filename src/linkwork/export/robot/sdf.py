@@ -34,6 +34,9 @@ def sdf_of(robot: Robot) -> str:
         raise InputError(f'link "{reserved[0]}" has a name that SDF reserves: rename it')
     root = Tree.Element("sdf", version="1.9")
     notes = [*robot.notes(), "Joints whose names begin with loop: close loops."]
+    driven = [joint.name for joint in robot.driven().values() if joint is not None]
+    if driven:
+        notes.append(f"Driven joints, whose motors a model cannot give: {', '.join(driven)}.")
     title = robot.name
     if not title or title == WORLD or _is_reserved(title) or "::" in title:
         notes.append(f'The model is named "{_UNTITLED}": SDF does not allow "{title}".')

@@ -35,7 +35,9 @@ def urdf_of(robot: Robot, motion: Motion) -> str:
         _joint(root, robot, joint, couplings)
     for name, own in couplings.joints.items():
         _polynomial(root, name, own, couplings)
-    return written(root, [*robot.notes(), *_notes(couplings)])
+    others = [j.name for j in robot.driven().values() if j not in (None, couplings.leading)]
+    step = f"Driven as well, here in step with it as in the table: {', '.join(others)}."
+    return written(root, [*robot.notes(), *_notes(couplings), *([step] if others else [])])
 
 
 def _notes(couplings: Couplings) -> list[str]:

@@ -7,12 +7,20 @@ from dataclasses import dataclass, field
 
 from linkwork.foundation.names import canonical
 
-__all__ = ["CellNames"]
+__all__ = ["CellNames", "chart_text"]
 
 #: Names that spreadsheets read as a cell, row, column or Boolean.
 _TAKEN = re.compile(r"[a-z]{1,3}[0-9]+|[rc][0-9]*([rc][0-9]*)?|true|false", re.IGNORECASE)
 _ODD = re.compile(r"[^\w.]")
 _LONGEST = 200
+
+
+def chart_text(text: str) -> str:
+    """A text for a chart's title or axis: XlsxWriter takes what looks like ``sheet!A1`` for a cell.
+
+    An invisible character (U+2060, word joiner) after the mark makes it a text.
+    """
+    return text.replace("!", "!\u2060")
 
 
 @dataclass

@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import Any
 
 from linkwork.export.workbook.book import CYCLE, FIRST, Book
+from linkwork.export.workbook.cell_names import chart_text
 from linkwork.results.quantity import Kind
 
 __all__ = ["write_charts"]
@@ -63,14 +64,14 @@ def _chart(book: Book, kind: Kind, curves: list[tuple[str, str]], columns: dict[
     values = book.motion.inputs[leading.name][book.iterations.rows]
     grid = {"visible": True, "line": {"color": "#e4e7eb", "width": 0.5}}
     axis: dict[str, Any] = {
-        "name": f"{book.shown(leading)} [{book.unit(leading.kind)}]",
+        "name": f"{book.shown(leading)} [{chart_text(book.unit(leading.kind))}]",
         "min": float(values.min()), "max": float(values.max()),
         "major_gridlines": grid, "label_position": "low", "num_format": "General",
     }  # fmt: skip
     if leading.kind == "angle" and book.unit("angle") == "deg":
         axis["major_unit"] = _right_angles(float(values.max() - values.min()))
     chart.set_x_axis(axis)
-    unit = book.unit(kind.value)
+    unit = chart_text(book.unit(kind.value))
     title = {"angle": "angles", "length": "lengths", "number": "numbers"}[kind.value]
     chart.set_y_axis({"name": f"{title} [{unit}]" if unit else title, "major_gridlines": grid})
     heading = f"{title.capitalize()} over {book.shown(leading)}"

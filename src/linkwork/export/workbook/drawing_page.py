@@ -11,6 +11,7 @@ import numpy as np
 
 from linkwork.equations.compiling import coordinate_name
 from linkwork.export.workbook.book import CYCLE, FIRST, Book, cached, column_name
+from linkwork.export.workbook.cell_names import chart_text
 from linkwork.export.workbook.page_layout import print_on_one_page
 
 __all__ = ["has_drawing", "write_drawing"]
@@ -114,10 +115,12 @@ class _Page:
             "major_unit": step, "num_format": "General", "label_position": "low",
             "line": {"color": "#9aa5b1"},
         }  # fmt: skip
-        unit = book.unit("length")
+        unit = chart_text(book.unit("length"))
         chart.set_x_axis({**axis, "min": low_x, "max": low_x + span, "name": f"x [{unit}]"})
         chart.set_y_axis({**axis, "min": low_y, "max": low_y + span, "name": f"y [{unit}]"})
-        chart.set_title({"name": book.model.description.name, "name_font": {"size": 13}})
+        chart.set_title(
+            {"name": chart_text(book.model.description.name), "name_font": {"size": 13}}
+        )
         chart.set_legend({"none": True})
         chart.set_size({"width": _SIDE, "height": _SIDE})
         layout = {"x": 0.11, "y": 0.09, "width": 0.80, "height": 0.80}
