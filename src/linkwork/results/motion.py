@@ -25,7 +25,8 @@ from linkwork.foundation.status import Status
 from linkwork.mechanism.skeleton import Skeleton
 from linkwork.results.failure import Failure
 from linkwork.results.limit import Limit, LimitKind, OutputLimit
-from linkwork.results.quantities.asked import Asked, Group
+from linkwork.results.quantities.asked import Asked, AskedOfMotion, Group
+from linkwork.results.quantities.located_rows import Between, LocatedRows, columns_of, locate_rows
 from linkwork.results.quantities.registry import EVIDENCE, Quantities
 from linkwork.results.quantity import Rate, Units
 from linkwork.results.series import Series
@@ -36,7 +37,9 @@ __all__ = ["Limit", "LimitKind", "Motion", "OutputLimit"]
 _FEW_ROWS = 4000  # of motions that are drawn
 
 
-@internal("quantities", "units", "skeleton", "quantity", "own", "place")
+@internal(
+    "quantities", "units", "skeleton", "quantity", "own", "place", "located", "between"
+)
 @dataclass(frozen=True, kw_only=True, eq=False, repr=False)
 class Motion:
     """The positions of a mechanism over a table of N input values.
@@ -102,6 +105,8 @@ class Motion:
         Why no position was found at the guess.
     friction_work : array (N,), optional
         Of a simulation with friction: the energy that it has taken so far.
+    between : callable, optional
+        Solves positions between rows; without it extremes are those of the rows.
 
     Examples
     --------
@@ -147,6 +152,7 @@ class Motion:
     q: Array
     failure: Failure | None = None
     friction_work: Array | None = None
+    between: Between | None = None
 
     def __post_init__(self) -> None:
         for field in (*EVIDENCE, "added", "q"):
@@ -204,6 +210,7 @@ class Motion:
         name : str
             ``min(…)``, ``max(…)``, ``mean(…)``, ``stroke(…)``, ``time_ratio(…)``,
             ``path_length(…)``, ``dwell(…, band)``; the value is in file units, NaN if undefined.
+            Extremes are located between the rows.
 
         Raises
         ------
@@ -217,10 +224,18 @@ class Motion:
         73.78
         """
         asked = self.quantities.find_of_motion(name)
+        return float(asked.number(self.located(asked).rows))
+
+    def located(self, asked: AskedOfMotion) -> LocatedRows:
+        """The rows with further ones that make a number of the motion exact."""
+        asked.of.check_rate(self.speed)
         names = asked.names
         leading = self.inputs[names.lead] * names.units.scale(names.inputs[names.lead])
-        columns = asked.columns(self) if asked.follows else (self[asked.of.name],)
-        return float(asked.evaluate(leading, *columns))
+        if asked.of.group in (Group.EVIDENCE, Group.INPUT):
+            columns: tuple[Array, ...] = (self[asked.of.name],)
+        else:
+            columns = columns_of(asked, self, self.speed)
+        return locate_rows(asked, asked.rows(leading, *columns), self.between, self.speed)
 
     def series(self, name: str) -> Series:
         """A quantity with both derivatives with respect to the leading input.
