@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Iterable, Iterator, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Any
 
@@ -14,6 +14,7 @@ from linkwork.batch.design_efforts import design_efforts
 from linkwork.batch.design_values import DesignValues
 from linkwork.batch.designs import Designs
 from linkwork.batch.limits import FamilyLimits
+from linkwork.batch.located_extremes import highest_values, peaks_of
 from linkwork.batch.rates import (
     DesignEvidence,
     DesignRates,
@@ -22,8 +23,9 @@ from linkwork.batch.rates import (
     design_speeds,
 )
 from linkwork.batch.rows import DesignRows
-from linkwork.batch.single_sweep import message_single
-from linkwork.foundation.arrays import Array, BoolArray, ComplexArray, StatusArray
+from linkwork.batch.rows_beside import rows_beside
+from linkwork.batch.single_sweep import message_single, single_motion
+from linkwork.foundation.arrays import Array, BoolArray, ComplexArray, IndexArray, StatusArray
 from linkwork.foundation.certification import Certification
 from linkwork.foundation.errors import (
     InputError,
@@ -35,9 +37,9 @@ from linkwork.foundation.names import find_spelling
 from linkwork.foundation.optional_packages import installed_with
 from linkwork.foundation.status import Status
 from linkwork.motion.leading_input import leading_input
-from linkwork.results.quantities.asked import Asked, Group
+from linkwork.results.quantities.asked import Asked, AskedOfMotion, Group
 from linkwork.results.quantities.registry import Quantities
-from linkwork.results.quantity import Rate
+from linkwork.results.quantity import Kind, Rate
 from linkwork.results.series import Series
 
 __all__ = ["FamilyMotion"]
@@ -114,7 +116,8 @@ class FamilyMotion:
             part = slice(begin, begin + step)
             own = self.designs.take(part)
             v, turns = rows.v[:, :, part], rows.turns[:, part]
-            yield part, DesignValues(own, self.inputs, v, turns, rates.take(part))
+            inputs = self.inputs if rows.inputs is None else self.inputs[:, :, part]
+            yield part, DesignValues(own, inputs, v, turns, rates.take(part))
 
     @cached_property
     def _evidence(self) -> DesignEvidence:
@@ -239,12 +242,48 @@ class FamilyMotion:
         """
         asked = self.quantities.find_of_motion(name)
         if not asked.follows:
-            return asked.evaluate(self.leading, self[asked.of.name])
+            return self.number(asked, self[asked.of.name])
         found = np.empty(len(self))
         for part, values in self._moving():
             columns = (column.T for column in asked.columns(values))
             found[part] = asked.evaluate(self.leading, *columns)
         return found
+
+    def number(self, asked: AskedOfMotion, value: Array) -> Array:
+        """A number (D,) that follows from the values of a quantity (D, R) alone; extremes are
+        located between the rows.
+        """
+        sides, of = asked.quantity.sides, asked.of
+        if not sides or of.group in (Group.EVIDENCE, Group.INPUT) or value.shape[1] < 3:
+            return asked.evaluate(self.leading, value)
+        best = [self._highest(of, side, value) for side in sides]
+        return sides[0] * best[0] if len(best) == 1 else best[0] + best[1]
+
+    def _highest(self, of: Asked, side: float, value: Array) -> Array:
+        """The largest of values (D, R) and between them, or less the smallest, (D,)."""
+        extreme: Array = (np.fmax if side > 0.0 else np.fmin).reduce(value, axis=1)
+        step = float(np.abs(np.diff(self.leading)).max())
+        if self.quantities.names.inputs[self.quantities.names.lead] is not Kind.ANGLE:
+            step /= float(np.ptp(self.leading)) or 1.0
+        peaks, best = peaks_of(value, extreme, side, step), side * extreme
+        alone = self.rows.alone[peaks.design]
+        word = "max" if side > 0.0 else "min"
+        for k in np.unique(peaks.design[alone]).tolist():
+            best[k] = side * single_motion(self.designs, k, self.rows).value(f"{word}({of.name})")
+        together = peaks.take(~alone)
+
+        def solve(which: IndexArray, at: Array) -> Array:
+            lanes, row = together.design[which], together.row[which]
+            rows = rows_beside(self.designs, self.rows, lanes, row, at - self.leading[row])
+            assert rows.inputs is not None
+            inputs = rows.inputs / self.designs.base.input_scale[:, None]
+            one = replace(self, designs=self.designs.take(lanes), inputs=inputs, rows=rows)
+            return side * one[of.name][:, 0]
+
+        if len(together.design):
+            highest = highest_values(together, self.leading, value, side, solve)
+            np.maximum.at(best, together.design, highest)
+        return best
 
     def trace(self, point: str) -> ComplexArray:
         """The path of a point as x + iy, (D, R); ``trace("B.velocity")`` is its velocity."""

@@ -1,0 +1,111 @@
+"""Extremes of a quantity between the rows of many designs.
+
+Polynomials through the rows next to the highest ones have the same extreme where rows are close. Else
+they say where the design is solved once more; the new position takes the place of the farthest row.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+
+from linkwork.foundation.arrays import Array, IndexArray
+from linkwork.foundation.rounding import EPSILON
+from linkwork.numerics.interpolated_peak import interpolated_peaks
+
+__all__ = ["Peaks", "highest_values", "peaks_of"]
+
+_ROWS = 9  # of a polynomial
+_PASSES = 8
+_SHARP = 2.0  # of the range of values: how much an extreme may bend per step squared
+_EXACT = 1e-12  # of the values: what the last row adds, ten times what the next one would
+_SAME = 1e-6  # of a step: a place so near to a solved one has the same value to rounding
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Peaks:
+    """Rows (L,) of designs (L,) next to which the largest value of the design may lie.
+
+    ``window`` (L, m): the rows around each.
+    """
+
+    design: IndexArray
+    row: IndexArray
+    window: IndexArray
+
+    def take(self, which: Array) -> Peaks:
+        """Some of them."""
+        return Peaks(design=self.design[which], row=self.row[which], window=self.window[which])
+
+
+def peaks_of(value: Array, best: Array, side: float, step: float) -> Peaks:
+    """The peaks of values (D, R), with a negative side the dips, that may exceed the best (D,).
+
+    ``step``: of the input, in radians or parts of the range. Peaks that no row shows are not seen:
+    two extremes between neighbouring rows.
+    """
+    count = value.shape[1]
+    size = min(_ROWS, count)
+    worst = (np.fmin if side > 0.0 else np.fmax).reduce(value, axis=1)
+    margin = min(_SHARP * step**2, 1.0) * (best - worst) + 8.0 * EPSILON * side * np.abs(best)
+    # families lie in memory row by row
+    high = (value.T >= best - margin) if side > 0.0 else (value.T <= best - margin)
+    row, design = np.nonzero(high)
+    here, before, after = (
+        side * value[design, np.clip(row + k, 0, count - 1)] for k in (0, -1, 1)
+    )
+    may = (here >= np.where(np.isnan(before), here, before)) & (
+        here >= np.where(np.isnan(after), here, after)
+    )
+    design, row = design[may], row[may]
+    known = np.isfinite(value)
+    window, there = np.zeros((len(row), size), dtype=np.intp), np.zeros(len(row), dtype=bool)
+    for shift in sorted(range(size), key=lambda k: abs(k - size // 2)):
+        left = np.flatnonzero(~there)  # rows next to those without a position are off the middle
+        if not len(left):
+            break
+        window[left] = np.clip(row[left] - shift, 0, count - size)[:, None] + np.arange(size)
+        there[left] = known[design[left, None], window[left]].all(axis=1)
+    return Peaks(design=design, row=row, window=window).take(there)
+
+
+def highest_values(
+    peaks: Peaks, at: Array, value: Array, side: float, solve: Callable[[IndexArray, Array], Array]
+) -> Array:
+    """The largest value at every peak, with a negative side less the smallest one, (L,).
+
+    Parameters
+    ----------
+    at : (R,)
+        Increasing or decreasing inputs of the rows.
+    value : (D, R)
+    solve : callable
+        Values at inputs (K,) of peaks by their number (K,), NaN where there is no position; with the
+        side as factor.
+    """
+    x, y = at[peaks.window], side * value[peaks.design[:, None], peaks.window]
+    step = np.abs(np.diff(at)).min()
+    each, highest = np.arange(len(x)), y.max(axis=1)
+    for _ in range(_PASSES):
+        top = y.argmax(axis=1)
+        here, best = x[each, top], y[each, top]
+        low = np.where(x < here[:, None], x, -np.inf).max(axis=1)
+        high = np.where(x > here[:, None], x, np.inf).min(axis=1)
+        low, high = np.where(np.isinf(low), here, low), np.where(np.isinf(high), here, high)
+        with np.errstate(all="ignore"):
+            t, peak, term = interpolated_peaks(x, y, low, high, here)
+        exact = term <= _EXACT * np.abs(y).max(axis=1)
+        highest = np.where(exact, np.fmax(peak, best), best)
+        which = np.flatnonzero(~exact & (np.abs(t[:, None] - x).min(axis=1) > _SAME * step))
+        if not len(which):
+            break
+        found = solve(which, t[which])
+        good = np.isfinite(found)
+        which, found = which[good], found[good]
+        if not len(which):
+            break
+        away = np.abs(x[which] - t[which, None]).argmax(axis=1)
+        x[which, away], y[which, away] = t[which], found
+    return np.fmax(highest, y.max(axis=1))
