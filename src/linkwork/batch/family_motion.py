@@ -14,7 +14,7 @@ from linkwork.batch.design_efforts import design_efforts
 from linkwork.batch.design_values import DesignValues
 from linkwork.batch.designs import Designs
 from linkwork.batch.limits import FamilyLimits
-from linkwork.batch.located_extremes import highest_values, peaks_of
+from linkwork.batch.located_extremes import highest_values, peaks_of, step_of
 from linkwork.batch.rates import (
     DesignEvidence,
     DesignRates,
@@ -39,7 +39,7 @@ from linkwork.foundation.status import Status
 from linkwork.motion.leading_input import leading_input
 from linkwork.results.quantities.asked import Asked, AskedOfMotion, Group
 from linkwork.results.quantities.registry import Quantities
-from linkwork.results.quantity import Kind, Rate
+from linkwork.results.quantity import Rate
 from linkwork.results.series import Series
 
 __all__ = ["FamilyMotion"]
@@ -262,9 +262,8 @@ class FamilyMotion:
     def _highest(self, of: Asked, side: float, value: Array) -> Array:
         """The largest of values (D, R) and between them, or less the smallest, (D,)."""
         extreme: Array = (np.fmax if side > 0.0 else np.fmin).reduce(value, axis=1)
-        step = float(np.abs(np.diff(self.leading)).max())
-        if self.quantities.names.inputs[self.quantities.names.lead] is not Kind.ANGLE:
-            step /= float(np.ptp(self.leading)) or 1.0
+        names = self.quantities.names
+        step = step_of(self.leading, names.inputs[names.lead])
         peaks, best = peaks_of(value, extreme, side, step), side * extreme
         alone = self.rows.alone[peaks.design]
         word = "max" if side > 0.0 else "min"

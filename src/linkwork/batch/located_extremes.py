@@ -6,19 +6,21 @@ they say where the design is solved once more; the new position takes the place 
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
 from linkwork.foundation.arrays import Array, IndexArray
 from linkwork.foundation.rounding import EPSILON
-from linkwork.numerics.interpolated_peak import interpolated_peaks
+from linkwork.numerics.interpolated_peak import interpolated_peaks, lagrange_weights
+from linkwork.results.quantity import Kind
 
-__all__ = ["Peaks", "highest_values", "peaks_of"]
+__all__ = ["Peaks", "highest_values", "interpolated_extremes", "peaks_of", "step_of"]
 
 _ROWS = 9  # of a polynomial
 _PASSES = 8
+_SOME = 24
 _SHARP = 2.0  # of the range of values: how much an extreme may bend per step squared
 _EXACT = 1e-12  # of the values: what the last row adds, ten times what the next one would
 _SAME = 1e-6  # of a step: a place so near to a solved one has the same value to rounding
@@ -40,19 +42,26 @@ class Peaks:
         return Peaks(design=self.design[which], row=self.row[which], window=self.window[which])
 
 
+def step_of(at: Array, kind: Kind) -> float:
+    """The largest step between inputs (R,), in radians or parts of their range."""
+    step = float(np.abs(np.diff(at)).max())
+    return step if kind is Kind.ANGLE else step / (float(np.ptp(at)) or 1.0)
+
+
 def peaks_of(value: Array, best: Array, side: float, step: float) -> Peaks:
     """The peaks of values (D, R), with a negative side the dips, that may exceed the best (D,).
 
-    ``step``: of the input, in radians or parts of the range. Peaks that no row shows are not seen:
+    ``step``: see :func:`step_of`. Peaks that no row shows are not seen:
     two extremes between neighbouring rows.
     """
     count = value.shape[1]
     size = min(_ROWS, count)
-    worst = (np.fmin if side > 0.0 else np.fmax).reduce(value, axis=1)
+    some = value[:, :: max(1, count // _SOME)]  # about the range
+    worst = (np.fmin if side > 0.0 else np.fmax).reduce(some, axis=1)
     margin = min(_SHARP * step**2, 1.0) * (best - worst) + 8.0 * EPSILON * side * np.abs(best)
     # families lie in memory row by row
     high = (value.T >= best - margin) if side > 0.0 else (value.T <= best - margin)
-    row, design = np.nonzero(high)
+    row, design = np.divmod(np.flatnonzero(high), len(value))
     here, before, after = (
         side * value[design, np.clip(row + k, 0, count - 1)] for k in (0, -1, 1)
     )
@@ -109,3 +118,32 @@ def highest_values(
         away = np.abs(x[which] - t[which, None]).argmax(axis=1)
         x[which, away], y[which, away] = t[which], found
     return np.fmax(highest, y.max(axis=1))
+
+
+def interpolated_extremes(
+    at: Array, value: Array, sides: Sequence[float], step: float
+) -> tuple[Array, Array]:
+    """An extreme of values (D, R), or the sum of several with their sides, on the polynomials
+    through the rows next to it, (D,); the weights of the rows in it, (D, R).
+    """
+    numbers, weights = np.zeros(len(value)), np.zeros(value.shape)
+    for side in sides:
+        row = np.where(np.isnan(value), -np.inf, side * value).argmax(axis=1)
+        each = np.arange(len(value))
+        number, weight = value[each, row], np.zeros(value.shape)
+        weight[each, row] = 1.0
+        peaks = peaks_of(value, number, side, step)
+        x, y = at[peaks.window], side * value[peaks.design[:, None], peaks.window]
+        beside = [at[np.clip(peaks.row + k, 0, len(at) - 1)] for k in (-1, 1)]
+        with np.errstate(all="ignore"):
+            t, peak, _ = interpolated_peaks(x, y, np.minimum(*beside), np.maximum(*beside),
+                                            at[peaks.row])  # fmt: skip
+        order = np.lexsort((peak, peaks.design))
+        # the highest peak of each design
+        last = order[np.append(np.diff(peaks.design[order]) > 0, [True] * bool(len(order)))]
+        own = peaks.take(last)
+        number[own.design], weight[own.design] = side * peak[last], 0.0
+        weight[own.design[:, None], own.window] = lagrange_weights(x[last], t[last])
+        factor = side if len(sides) > 1 else 1.0
+        numbers, weights = numbers + factor * number, weights + factor * weight
+    return numbers, weights
