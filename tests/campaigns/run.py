@@ -20,6 +20,7 @@ from tests.campaigns.circuits import circuit_campaign
 from tests.campaigns.configurations import configuration_campaign
 from tests.campaigns.dead_points import dead_point_campaign
 from tests.campaigns.defects import defect_campaign
+from tests.campaigns.extremes import extreme_campaign
 from tests.campaigns.families import family_campaign
 from tests.campaigns.forces import force_campaign
 from tests.campaigns.fuzz import fuzz_campaign
@@ -47,6 +48,7 @@ __all__ = ["CAMPAIGNS", "WHOLE", "Report", "run"]
 _PART = 50
 # every length of train and every mechanism is a part; tasks of poses are solved many at a time
 _OWN_PART = {
+    "extremes": 10,
     "goals": 1,
     "gradients": 1,
     "improve": 1,
@@ -122,6 +124,10 @@ def _forces(part: int) -> tuple[Counter[str], list[str]]:
     return force_campaign(part, _PART)
 
 
+def _extremes(part: int) -> tuple[Counter[str], list[str]]:
+    return extreme_campaign(part, _OWN_PART["extremes"])
+
+
 def _links(part: int) -> tuple[Counter[str], list[str]]:
     return link_campaign(part, _PART)
 
@@ -161,6 +167,7 @@ CAMPAIGNS: dict[str, tuple[Callable[[int], tuple[Counter[str], list[str]]], int]
     "links": (_links, 100_000),
     "imports": (_imports, 80_000),
     "forces": (_forces, 2_000),
+    "extremes": (_extremes, 2_000),
     "precision-points": (_precision_points, 200),
     "nine-points": (nine_point_campaign, 100),
     "poses": (_poses, 100_000),

@@ -38,7 +38,8 @@ _FEW_ROWS = 4000  # of motions that are drawn
 
 
 @internal(
-    "quantities", "units", "skeleton", "quantity", "own", "place", "located", "between"
+    "quantities", "units", "skeleton", "quantity", "own", "place", "located", "between",
+    "is_of_rows",
 )
 @dataclass(frozen=True, kw_only=True, eq=False, repr=False)
 class Motion:
@@ -225,6 +226,12 @@ class Motion:
         """
         asked = self.quantities.find_of_motion(name)
         return float(asked.number(self.located(asked).rows))
+
+    def is_of_rows(self, name: str) -> bool:
+        """Whether a number of the motion is that of its rows, and follows their distance."""
+        asked = self.quantities.find_of_motion(name)
+        known = self.between is None or asked.of.group is Group.EVIDENCE
+        return known or asked.quantity.places is None
 
     def located(self, asked: AskedOfMotion) -> LocatedRows:
         """The rows with further ones that make a number of the motion exact."""

@@ -15,6 +15,7 @@ from linkwork.results.quantities.definition import UNKNOWN, MotionRows, Solved
 __all__ = ["Between", "LocatedRows", "columns_of", "locate_rows"]
 
 _MOST_PASSES = 16
+_POLE = 1e4  # times the values of the table: there is a pole, not an extreme
 _SAME = 1e-12  # of the input: places so near to a row are that row
 
 
@@ -72,6 +73,7 @@ def locate_rows(
     if between is None or places is None or asked.of.group is Group.EVIDENCE or len(order) < 2:
         return LocatedRows(rows=rows, further=further, order=order)
     rows, before, count = replace(rows, joined=between.joined), order, len(order)
+    most = _POLE * np.nanmax(np.abs(rows.value), initial=0.0)
     for _ in range(_MOST_PASSES):
         row, part = places(rows, asked.numbers)
         step = np.abs(rows.input[row + 1] - rows.input[row])
@@ -93,6 +95,9 @@ def locate_rows(
         before = np.insert(before, behind, before[row[there]])
         further.append(more)
         count += len(at)
+    if asked.quantity.sides and (np.abs(rows.value) > most).any():
+        beyond = np.where(np.abs(rows.value) > most, np.inf * np.sign(rows.value), rows.value)
+        rows = replace(rows, value=beyond)
     return LocatedRows(rows=rows, further=further, order=order)
 
 
