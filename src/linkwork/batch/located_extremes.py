@@ -142,7 +142,7 @@ def interpolated_extremes(
                                             at[peaks.row])  # fmt: skip
         order = np.lexsort((peak, peaks.design))
         # the highest peak of each design
-        last = order[np.append(np.diff(peaks.design[order]) > 0, [True] * bool(len(order)))]
+        last = order[np.diff(peaks.design[order], append=len(value)) > 0]
         own = peaks.take(last)
         number[own.design], weight[own.design] = side * peak[last], 0.0
         weight[own.design[:, None], own.window] = lagrange_weights(x[last], t[last])

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+
 import numpy as np
 
 from linkwork.foundation.arrays import Array, BoolArray, IndexArray
@@ -109,7 +111,20 @@ def _next_to_peaks(rows: MotionRows, value: Array) -> Places:
         for row in (k - 1, k):
             found.append((np.full(len(_EIGHTHS), row), _EIGHTHS))
         found.append(_vertex(rows.input[k - 1 : k + 2], value[k - 1 : k + 2], k))
-    return joined_places(*found)
+    return joined_places(*found, *_next_to_ends(rows, value, best, inner))
+
+
+def _next_to_ends(
+    rows: MotionRows, value: Array, best: float, inner: BoolArray
+) -> Iterator[Places]:
+    """The vertex in the first or last step of rows that are joined, if the parabola has one."""
+    for k in np.flatnonzero(inner & ~(np.roll(inner, 1) & np.roll(inner, -1))):
+        f, u = value[k - 1 : k + 2], rows.input[k - 1 : k + 2]
+        row, part = _vertex(u, f, k)
+        beside = inner[k + 1] if row[0] == k else inner[k - 1]
+        concave = 2.0 * f[1] > f[0] + f[2] and 0.0 < part[0] < 1.0
+        if concave and not beside and f.max() + np.ptp(f) >= best:
+            yield row, part
 
 
 def _vertex(u: Array, f: Array, row: int) -> Places:
