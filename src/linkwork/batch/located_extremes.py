@@ -1,7 +1,7 @@
 """Extremes of a quantity between the rows of many designs.
 
-Polynomials through the rows next to the highest ones have the same extreme where rows are close. Else
-they say where the design is solved once more; the new position takes the place of the farthest row.
+Polynomials through the rows next to the highest ones have the same extreme where rows are close.
+Elsewhere they say where the design is solved once more, in place of the farthest row.
 """
 
 from __future__ import annotations
@@ -11,7 +11,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from linkwork.foundation.arrays import Array, IndexArray
+from linkwork.foundation.arrays import Array, BoolArray, IndexArray
 from linkwork.foundation.rounding import EPSILON
 from linkwork.numerics.interpolated_peak import interpolated_peaks, lagrange_weights
 from linkwork.results.quantity import Kind
@@ -38,7 +38,7 @@ class Peaks:
     row: IndexArray
     window: IndexArray
 
-    def take(self, which: Array) -> Peaks:
+    def take(self, which: IndexArray | BoolArray) -> Peaks:
         """Some of them."""
         return Peaks(design=self.design[which], row=self.row[which], window=self.window[which])
 
@@ -61,11 +61,9 @@ def peaks_of(value: Array, best: Array, side: float, step: float) -> Peaks:
     worst = (np.fmin if side > 0.0 else np.fmax).reduce(some, axis=1)
     margin = min(_SHARP * step**2, 1.0) * (best - worst) + 8.0 * EPSILON * side * np.abs(best)
     # families lie in memory row by row
-    high = (value.T >= best - margin) if side > 0.0 else (value.T <= best - margin)
+    high = (best - margin <= value.T) if side > 0.0 else (best - margin >= value.T)
     row, design = np.divmod(np.flatnonzero(high), len(value))
-    here, before, after = (
-        side * value[design, np.clip(row + k, 0, count - 1)] for k in (0, -1, 1)
-    )
+    here, before, after = (side * value[design, np.clip(row + k, 0, count - 1)] for k in (0, -1, 1))
     may = (here >= np.where(np.isnan(before), here, before)) & (
         here >= np.where(np.isnan(after), here, after)
     )
@@ -92,8 +90,8 @@ def highest_values(
         Increasing or decreasing inputs of the rows.
     value : (D, R)
     solve : callable
-        Values at inputs (K,) of peaks by their number (K,), NaN where there is no position; with the
-        side as factor.
+        Values times the side at inputs (K,) of peaks by their number (K,), NaN where there is no
+        position.
     """
     x, y = at[peaks.window], side * value[peaks.design[:, None], peaks.window]
     step = np.abs(np.diff(at)).min()

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, cast
 
 import numpy as np
 
@@ -301,7 +301,8 @@ def _number(model: Model, motion: Motion, of: str) -> tuple[float, str, list[_Pa
     value = float(asked.number(located.rows))
     with np.errstate(all="ignore"):
         slopes = asked.quantity.slopes(located.rows, asked.numbers)
-    rows = rows_of(model, motion, *located.further).take(located.order)
+    further = cast("Sequence[Motion]", located.further)  # what a motion solves
+    rows = rows_of(model, motion, *further).take(located.order)
     return value, asked.unit, list(_parts(rows, slopes, asked))
 
 

@@ -12,7 +12,7 @@ from functools import cached_property
 
 import numpy as np
 
-from linkwork.foundation.arrays import Array, BoolArray, IndexArray
+from linkwork.foundation.arrays import Array, BoolArray, ComplexArray, IndexArray
 from linkwork.foundation.rounding import UNIT_ROUNDOFF
 from linkwork.kernels.curvature import Curvature, PhaseGroups
 from linkwork.kernels.exact_rows import exact_line, exact_rows

@@ -211,11 +211,14 @@ def _limits_by_values(
             here = float(rows.input[best])
             # the last correction: a flat extreme is known by its value, hardly by its input
             error = float(np.abs(rows.input[[best - 1, best + 1]] - here).min())
-            yield here, OutputLimit(
-                name=asked.name,
-                kind="maximum" if side > 0.0 else "minimum",
-                input=here / unit,
-                value=float(rows.value[best]),
-                bracket=((here - error) / unit, (here + error) / unit),
-                located=error <= _NEAR * max(1.0, abs(here)),
+            yield (
+                here,
+                OutputLimit(
+                    name=asked.name,
+                    kind="maximum" if side > 0.0 else "minimum",
+                    input=here / unit,
+                    value=float(rows.value[best]),
+                    bracket=((here - error) / unit, (here + error) / unit),
+                    located=error <= _NEAR * max(1.0, abs(here)),
+                ),
             )

@@ -50,7 +50,8 @@ class RowsBetween:
         rows = self.rows
         parts = (rows.v, rows.first, rows.second)
         regular: BoolArray = np.all([np.isfinite(part).all(axis=1) for part in parts], axis=0)
-        return regular & (rows.status == CONVERGED)
+        regular &= rows.status == CONVERGED
+        return regular
 
     @cached_property
     def joined(self) -> BoolArray:

@@ -38,7 +38,14 @@ _FEW_ROWS = 4000  # of motions that are drawn
 
 
 @internal(
-    "quantities", "units", "skeleton", "quantity", "own", "place", "located", "between",
+    "quantities",
+    "units",
+    "skeleton",
+    "quantity",
+    "own",
+    "place",
+    "located",
+    "between",
     "is_of_rows",
 )
 @dataclass(frozen=True, kw_only=True, eq=False, repr=False)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from typing import cast
 
 import numpy as np
 
@@ -31,5 +32,5 @@ def fine_table(model: Model, motion: Motion, table: Array) -> tuple[Array, Array
     at = np.append(table[row] + part / parts * np.diff(table)[row], table[-1])
     inner = np.flatnonzero(part)
     q = np.concatenate([motion.q[row], motion.q[-1:]])
-    q[inner] = motion.between(row[inner], at[inner]).q
+    q[inner] = cast("Motion", motion.between(row[inner], at[inner])).q
     return (at, q) if np.isfinite(q).all() else None

@@ -28,7 +28,6 @@ from linkwork.results.quantities.definition import (
     cubic_weight_slopes,
     cubic_weights,
 )
-
 from linkwork.results.quantities.extreme_places import NOWHERE
 
 __all__ = ["DWELL"]

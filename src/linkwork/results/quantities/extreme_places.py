@@ -40,7 +40,8 @@ def extreme_places(rows: MotionRows, side: float) -> Places:
     ends = rates, side * step * rows.first[1:]
     slopes = bends, side * step**2 * rows.second[1:]
     # without a second derivative the first one is linear
-    slopes = tuple(np.where(np.isnan(x), ends[1] - ends[0], x) for x in slopes)
+    begin, end = (np.where(np.isnan(x), ends[1] - ends[0], x) for x in slopes)
+    slopes = begin, end
     smooth = rows.joined & np.isfinite(sum((*ends, *slopes)))
     with np.errstate(all="ignore"):
         if not smooth.any():
@@ -59,17 +60,15 @@ def _zeros(value: Array, ends: _Ends, slopes: _Ends, smooth: BoolArray) -> Place
     top = np.maximum(value[:-1], value[1:])
     rate = cubic(_SAMPLES[:, None], ends, slopes)
     # what the cubic of the derivative misses of the change of the value
-    missed = np.abs(
-        np.diff(value) - 0.5 * (ends[0] + ends[1]) - (slopes[0] - slopes[1]) / 12.0
-    )
+    missed = np.abs(np.diff(value) - 0.5 * (ends[0] + ends[1]) - (slopes[0] - slopes[1]) / 12.0)
     rise = np.maximum(rate, 0.0).max(axis=0)
     may = smooth & (top + rise + missed >= best)
     rounding = 16.0 * EPSILON * np.abs(top)
     poor = may & (missed > _POOR * np.abs(rate).max(axis=0) + rounding)
     row = np.flatnonzero(may & ((rate[:-1] > 0.0) & (rate[1:] <= 0.0)).any(axis=0) & ~poor)
     falls = ((rate[:-1] > 0.0) & (rate[1:] <= 0.0))[:, row].argmax(axis=0)
-    pairs = [tuple(x[row] for x in pair) for pair in (ends, slopes)]
-    part = roots_of_cubics(pairs[0], pairs[1], _SAMPLES[falls], _SAMPLES[falls + 1])
+    own = (ends[0][row], ends[1][row]), (slopes[0][row], slopes[1][row])
+    part = roots_of_cubics(*own, _SAMPLES[falls], _SAMPLES[falls + 1])
     middle = np.flatnonzero(poor)
     return joined_places((row, part), (middle, np.full(len(middle), 0.5)))
 
@@ -83,10 +82,9 @@ def roots_of_cubics(ends: _Ends, slopes: _Ends, low: Array, high: Array) -> Arra
     return high
 
 
-def _towards_dead_points(
-    rows: MotionRows, value: Array, ends: _Ends, smooth: BoolArray
-) -> Places:
+def _towards_dead_points(rows: MotionRows, value: Array, ends: _Ends, smooth: BoolArray) -> Places:
     """The middle of steps without rates at one end, where the quantity turns before that."""
+    assert rows.joined is not None
     change = np.diff(value)
     turns = np.where(np.isfinite(ends[0]), (ends[0] > 0.0) & (change < 0.0),
                      (ends[1] < 0.0) & (change > 0.0))  # fmt: skip
@@ -107,9 +105,8 @@ def _next_to_peaks(rows: MotionRows, value: Array) -> Places:
     peaks = (value >= left) & (value >= right) & (value + bend >= best)
     peaks &= bend > 16.0 * EPSILON * np.abs(best)
     found = [NOWHERE]
-    for k in np.flatnonzero(peaks):
-        for row in (k - 1, k):
-            found.append((np.full(len(_EIGHTHS), row), _EIGHTHS))
+    for k in np.flatnonzero(peaks).tolist():
+        found += [(np.full(len(_EIGHTHS), row), _EIGHTHS) for row in (k - 1, k)]
         found.append(_vertex(rows.input[k - 1 : k + 2], value[k - 1 : k + 2], k))
     return joined_places(*found, *_next_to_ends(rows, value, best, inner))
 
@@ -118,7 +115,7 @@ def _next_to_ends(
     rows: MotionRows, value: Array, best: float, inner: BoolArray
 ) -> Iterator[Places]:
     """The vertex in the first or last step of rows that are joined, if the parabola has one."""
-    for k in np.flatnonzero(inner & ~(np.roll(inner, 1) & np.roll(inner, -1))):
+    for k in np.flatnonzero(inner & ~(np.roll(inner, 1) & np.roll(inner, -1))).tolist():
         f, u = value[k - 1 : k + 2], rows.input[k - 1 : k + 2]
         row, part = _vertex(u, f, k)
         beside = inner[k + 1] if row[0] == k else inner[k - 1]

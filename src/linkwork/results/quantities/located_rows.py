@@ -56,7 +56,7 @@ def columns_of(
 ) -> tuple[Array, Array, Array]:
     """The quantity and its derivatives by the leading input, NaN if it has none, in file units."""
     of, rate = asked.of, asked.of.rate
-    if asked.quantity.of_point or rate is None and of.group is not Group.EVIDENCE:
+    if asked.quantity.of_point or (rate is None and of.group is not Group.EVIDENCE):
         return replace(asked, quantity=replace(asked.quantity, needs=2)).columns(solved, speed)
     value = of.values(solved, speed)
     if rate is None or rate.order > 1 or of.group is Group.POINT:

@@ -1,8 +1,8 @@
 """The length of the path of a point over a motion.
 
 L = ∫ |F'| du, by Gauss' rule with five points between neighbouring rows, where F is the quintic
-through places and both derivatives there. A motion adds rows until its steps are short enough. Where
-a derivative is missing, as at a dead point, the chord is used; a missing row adds nothing.
+through places and both derivatives there. A motion adds rows until its steps are short enough.
+Where a derivative is missing, as at a dead point, the chord is used; a missing row adds nothing.
 """
 
 from __future__ import annotations
@@ -68,7 +68,7 @@ def _parts(rows: MotionRows) -> tuple[Array, Array]:
     for s, weight in _gauss():
         total += weight * np.abs(sum(w * x for w, x in zip(_weights(s), ends, strict=True)))
     for s, weight in _gauss(_POINTS - 1):
-        other += weight * np.abs(cubic(s, ends[1:3], ends[3:5]))
+        other += weight * np.abs(cubic(s, (ends[1], ends[2]), (ends[3], ends[4])))
     return total, np.abs(total - other)
 
 

@@ -99,8 +99,8 @@ def _turning(rows: MotionRows, row: Array, side: float) -> tuple[Array, Array, A
     step = np.diff(rows.input)[np.mod(begin, last)]
     ends = at(rows.first, begin), at(rows.first, begin + 1)
     slopes = step * at(rows.second, begin), step * at(rows.second, begin + 1)
-    falling = [(side * first, side * second) for first, second in (ends, slopes)]
-    part = roots_of_cubics(*falling, np.zeros(row.shape), np.ones(row.shape))
+    first, second = ((side * begin, side * end) for begin, end in (ends, slopes))
+    part = roots_of_cubics(first, second, np.zeros(row.shape), np.ones(row.shape))
     return np.mod(begin, last), step, part
 
 
