@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Iterable, Iterator, Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from functools import cached_property
 from typing import Any
 
@@ -14,7 +14,7 @@ from linkwork.batch.design_efforts import design_efforts
 from linkwork.batch.design_values import DesignValues
 from linkwork.batch.designs import Designs
 from linkwork.batch.limits import FamilyLimits
-from linkwork.batch.located_extremes import highest_values, peaks_of, step_of
+from linkwork.batch.located_numbers import located_number
 from linkwork.batch.rates import (
     DesignEvidence,
     DesignRates,
@@ -23,9 +23,8 @@ from linkwork.batch.rates import (
     design_speeds,
 )
 from linkwork.batch.rows import DesignRows
-from linkwork.batch.rows_beside import rows_beside
-from linkwork.batch.single_sweep import message_single, single_motion
-from linkwork.foundation.arrays import Array, BoolArray, ComplexArray, IndexArray, StatusArray
+from linkwork.batch.single_sweep import message_single
+from linkwork.foundation.arrays import Array, BoolArray, ComplexArray, StatusArray
 from linkwork.foundation.certification import Certification
 from linkwork.foundation.errors import (
     InputError,
@@ -116,8 +115,7 @@ class FamilyMotion:
             part = slice(begin, begin + step)
             own = self.designs.take(part)
             v, turns = rows.v[:, :, part], rows.turns[:, part]
-            inputs = self.inputs if rows.inputs is None else self.inputs[:, :, part]
-            yield part, DesignValues(own, inputs, v, turns, rates.take(part))
+            yield part, DesignValues(own, self.inputs, v, turns, rates.take(part))
 
     @cached_property
     def _evidence(self) -> DesignEvidence:
@@ -253,36 +251,7 @@ class FamilyMotion:
         """A number (D,) that follows from the values of a quantity (D, R) alone; extremes are
         located between the rows.
         """
-        sides, of = asked.quantity.sides, asked.of
-        if not sides or of.group in (Group.EVIDENCE, Group.INPUT) or value.shape[1] < 3:
-            return asked.evaluate(self.leading, value)
-        best = [self._highest(of, side, value) for side in sides]
-        return sides[0] * best[0] if len(best) == 1 else best[0] + best[1]
-
-    def _highest(self, of: Asked, side: float, value: Array) -> Array:
-        """The largest of values (D, R) and between them, or less the smallest, (D,)."""
-        extreme: Array = (np.fmax if side > 0.0 else np.fmin).reduce(value, axis=1)
-        names = self.quantities.names
-        step = step_of(self.leading, names.inputs[names.lead])
-        peaks, best = peaks_of(value, extreme, side, step), side * extreme
-        alone = self.rows.alone[peaks.design]
-        word = "max" if side > 0.0 else "min"
-        for k in np.unique(peaks.design[alone]).tolist():
-            best[k] = side * single_motion(self.designs, k, self.rows).value(f"{word}({of.name})")
-        together = peaks.take(~alone)
-
-        def solve(which: IndexArray, at: Array) -> Array:
-            lanes, row = together.design[which], together.row[which]
-            rows = rows_beside(self.designs, self.rows, lanes, row, at - self.leading[row])
-            assert rows.inputs is not None
-            inputs = rows.inputs / self.designs.base.input_scale[:, None]
-            one = replace(self, designs=self.designs.take(lanes), inputs=inputs, rows=rows)
-            return side * one[of.name][:, 0]
-
-        if len(together.design):
-            highest = highest_values(together, self.leading, value, side, solve)
-            np.maximum.at(best, together.design, highest)
-        return best
+        return located_number(self.designs, self.rows, asked, value, self.threads)
 
     def trace(self, point: str) -> ComplexArray:
         """The path of a point as x + iy, (D, R); ``trace("B.velocity")`` is its velocity."""

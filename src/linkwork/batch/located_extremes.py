@@ -24,7 +24,7 @@ _SOME = 24
 _POLE = 1e4  # times the values of rows: there is a pole, not an extreme
 _SHARP = 2.0  # of the range of values: how much an extreme may bend per step squared
 _EXACT = 1e-12  # of the values: what the last row adds, ten times what the next one would
-_SAME = 1e-6  # of a step: a place so near to a solved one has the same value to rounding
+_SAME_PLACE = 1e-6  # of a step: a place so near to a solved one has the same value to rounding
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -106,7 +106,7 @@ def highest_values(
             t, peak, term = interpolated_peaks(x, y, low, high, here)
         exact = term <= _EXACT * size
         highest = np.where(exact, np.fmax(peak, best), best)
-        which = np.flatnonzero(~exact & (np.abs(t[:, None] - x).min(axis=1) > _SAME * step))
+        which = np.flatnonzero(~exact & (np.abs(t[:, None] - x).min(axis=1) > _SAME_PLACE * step))
         if not len(which):
             break
         found = solve(which, t[which])

@@ -12,7 +12,7 @@ from functools import cached_property
 
 import numpy as np
 
-from linkwork.foundation.arrays import Array, BoolArray, ComplexArray, IndexArray
+from linkwork.foundation.arrays import Array, BoolArray, IndexArray
 from linkwork.foundation.rounding import UNIT_ROUNDOFF
 from linkwork.kernels.curvature import Curvature, PhaseGroups
 from linkwork.kernels.exact_rows import exact_line, exact_rows
@@ -87,19 +87,14 @@ class LoopTable:
     def _only_loops(self) -> bool:
         return not len(self.linear.constant) and not self.functions
 
-    def residual_and_jacobian(
-        self, v: Array, coefficient: ComplexArray | None = None, constant: Array | None = None
-    ) -> tuple[Array, Array]:
-        """F, (B, m), and dF/dv, (B, m, N).
-
-        ``coefficient`` (B, T), ``constant`` (B, R): others of loops and lines in each position.
-        """
-        value, slope = self.loops.value_and_jacobian(v, coefficient)
+    def residual_and_jacobian(self, v: Array) -> tuple[Array, Array]:
+        """F, (B, m), and dF/dv, (B, m, N)."""
+        value, slope = self.loops.value_and_jacobian(v)
         residual = np.concatenate([value.real, value.imag], axis=1)
         jacobian = np.concatenate([slope.real, slope.imag], axis=1)
         if self._only_loops:
             return residual, jacobian
-        extra, extra_slope = self._real_rows(v, constant)
+        extra, extra_slope = self._real_rows(v)
         return (
             np.concatenate([residual, extra], axis=1),
             np.concatenate([jacobian, extra_slope], axis=1),
@@ -281,10 +276,9 @@ class LoopTable:
             ),
         )
 
-    def _real_rows(self, v: Array, constant: Array | None = None) -> tuple[Array, Array]:
+    def _real_rows(self, v: Array) -> tuple[Array, Array]:
         a = self._linear_matrix
-        # eq. (4) with f = 0
-        values = [v @ a.T + (self.linear.constant if constant is None else constant)]
+        values = [v @ a.T + self.linear.constant]  # eq. (4) with f = 0
         slopes = [np.broadcast_to(a, (len(v), *a.shape))]
         for row in self.functions:
             value, gradient = row.value_and_gradient(v)

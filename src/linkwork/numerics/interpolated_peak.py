@@ -37,8 +37,8 @@ def interpolated_peaks(
             second = second * away + 2.0 * first
             first = first * away + value
             value = value * away + differences[k]
-        step = np.where(second < 0.0, -first / second, np.where(first > 0.0, high, low) - t)
-        t = np.clip(np.where(np.isnan(step), t, t + step), low, high)
+        change = np.where(second < 0.0, -first / second, np.where(first > 0.0, high, low) - t)
+        t = np.clip(np.where(np.isnan(change), t, t + change), low, high)
     value, product = np.zeros(len(t)), np.ones(len(t))
     for k in reversed(range(x.shape[1])):
         value = value * (t - x[:, k]) + differences[k]

@@ -8,7 +8,6 @@ from functools import cached_property
 
 import numpy as np
 
-from linkwork.design.improvement.fine_table import fine_table
 from linkwork.design.improvement.goals import Misses, PathGoal, goal_of
 from linkwork.design.improvement.lane_work import LaneWork
 from linkwork.design.improvement.largest_miss import largest_misses, powered
@@ -142,9 +141,7 @@ class FitProblem:
         there = np.asarray(motion.found[motion.asked])
         self.own_variables = self._timing(table)
         self.writer = DesignWriter(model, given.numbers)
-        self.fine = fine_table(model, motion, table)
-        at = None if self.fine is None else self.fine[0]
-        self.goals = [goal_of(model, goal, table, there, scale, at) for goal in given.goals]
+        self.goals = [goal_of(model, goal, table, there, scale) for goal in given.goals]
         self.points = None if path is None else self._rows(path.inputs)
         # goals of the same rows share their positions
         self.rows: dict[bytes, SolvedLanes] = {}
@@ -222,8 +219,6 @@ class FitProblem:
 
     def _rows(self, at: Array) -> SolvedLanes:
         """Lanes at inputs, begun at the nearest rows of the mechanism's motion."""
-        if self.fine is not None and at is self.fine[0]:
-            return SolvedLanes(self.writer, self.x, self.fine[1], at, self.lanes)
         away = inputs_away(at, self.motion, self.model)
         q = self.motion.q[away.argmin(axis=1)]
         return SolvedLanes(self.writer, self.x, q, at, self.lanes)

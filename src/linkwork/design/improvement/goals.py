@@ -166,14 +166,7 @@ def _margin(bound: Any) -> Any:
     return _MARGIN * np.maximum(1.0, np.abs(bound))
 
 
-def goal_of(
-    model: Model,
-    goal: Goal,
-    table: Array,
-    there: BoolArray,
-    scale: float,
-    fine: Array | None = None,
-) -> Misses:
+def goal_of(model: Model, goal: Goal, table: Array, there: BoolArray, scale: float) -> Misses:
     """The misses of a goal.
 
     Parameters
@@ -184,8 +177,6 @@ def goal_of(
         Where the mechanism as it is has a position.
     scale : float
         The unit of inputs in files.
-    fine : (N,), optional
-        Of a coarse table: inputs between its rows as well, for all numbers but means of rows.
 
     Raises
     ------
@@ -211,8 +202,6 @@ def goal_of(
         return _RowMisses(model, goal, at)
     if goal.at:
         raise InputError(f'"{goal.of}" is a number of the whole motion: leave out at and values')
-    if fine is not None and not any(call.startswith("mean") for call in calls):
-        table, there = fine, np.ones(len(fine), dtype=bool)
     return _NumberMisses(model, goal, table, there, calls)
 
 

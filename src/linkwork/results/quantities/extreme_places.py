@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator
 
 import numpy as np
@@ -18,6 +19,7 @@ NOWHERE: Places = np.zeros(0, dtype=np.intp), np.zeros(0)
 _HALVINGS = 52
 _SAMPLES = np.linspace(0.0, 1.0, 9)  # of a step between rows
 _POOR = 1e-2  # of the change over a step: cubics that miss so much are no guide
+_FINE = 2.6  # degrees, or parts of the range of which 360 are a turn
 _EIGHTHS = np.arange(1, 8) / 8.0
 
 
@@ -45,6 +47,10 @@ def extreme_places(rows: MotionRows, side: float) -> Places:
     smooth = rows.joined & np.isfinite(sum((*ends, *slopes)))
     with np.errstate(all="ignore"):
         if not smooth.any():
+            fine = math.radians(_FINE) if rows.turn else np.ptp(rows.input) * _FINE / 360.0
+            coarse = np.flatnonzero(rows.joined & (np.abs(step) > fine))
+            if len(coarse):  # values alone do not show what is between rows
+                return coarse, np.full(len(coarse), 0.5)
             return _next_to_peaks(rows, value)
         return joined_places(
             _zeros(value, ends, slopes, smooth), _towards_dead_points(rows, value, ends, smooth)
