@@ -15,8 +15,8 @@ from linkwork.results.quantities.definition import UNKNOWN, MotionRows, Solved
 __all__ = ["Between", "LocatedRows", "columns_of", "locate_rows"]
 
 _MOST_PASSES = 16
-_POLE = 1e4  # times the values of the table: there is a pole, not an extreme
-_SAME = 1e-12  # of the input: places so near to a row are that row
+_POLE = 1e3  # times the values of the table: there is a pole, not an extreme
+_AT_ROW = 1e-12  # of the input: places so near to a row are that row
 
 
 class SolvedTable(Solved, Protocol):
@@ -78,7 +78,7 @@ def locate_rows(
         row, part = places(rows, asked.numbers)
         step = np.abs(rows.input[row + 1] - rows.input[row])
         size = np.maximum(np.ptp(rows.input), np.abs(rows.input[row]))
-        fresh = np.minimum(part, 1.0 - part) * step > _SAME * size
+        fresh = np.minimum(part, 1.0 - part) * step > _AT_ROW * size
         at = np.unique(np.stack([row[fresh], part[fresh]]), axis=1)
         row, part = at[0].astype(np.intp), at[1]
         if not len(row):
