@@ -14,7 +14,12 @@ from linkwork.motion.drive import Drive
 from linkwork.motion.leading_input import leading_input
 from linkwork.motion.model import Model
 from linkwork.motion.motion_of_rows import motion_of_rows
-from linkwork.numerics.continuation.branch_tracking import follow, node_at, quintic
+from linkwork.numerics.continuation.branch_tracking import (
+    follow,
+    node_at,
+    quintic,
+    rows_of_nodes,
+)
 from linkwork.numerics.newton import unlimited
 from linkwork.numerics.rows import SolvedRows
 from linkwork.results.motion import Motion
@@ -79,18 +84,38 @@ class RowsBetween:
         smooth = np.flatnonzero(self._regular[row] & self._regular[row + 1])
         if len(smooth):
             found = found.put(smooth, self._interpolated(row[smooth], here[smooth]))
-        for k in np.flatnonzero(found.status != CONVERGED):
-            begin = row[k] if self._regular[row[k]] else row[k] + 1
-            node = node_at(solver, drive.path, float(t[begin]), rows.v[begin])
-            nodes, end = follow(solver, drive.path, node, float(here[k]))
-            if end is None and nodes:
-                arrived = nodes[-1]
-                found = found.set(
-                    k, v=arrived.v, first=arrived.first, second=arrived.second,
-                    status=CONVERGED, condition=arrived.condition,
-                )  # fmt: skip
+        left = np.flatnonzero(found.status != CONVERGED)
+        found = found.put(*self._followed(left, row[left], here[left]))
         found = found.set(branch=rows.branch[row])
         return motion_of_rows(self.model, found, "", np.ones(len(row), dtype=bool))
+
+    def _followed(
+        self, number: IndexArray, row: IndexArray, here: Array
+    ) -> tuple[IndexArray, SolvedRows]:
+        """Positions followed from rows with rates, one after the other; those that were reached,
+        by their numbers.
+        """
+        (t, _), drive, rows = self._places, self._drive, self.rows
+        begin = np.where(self._regular[row], row, row + 1)
+        reached, nodes = [], []
+        node, last = None, -1
+        for k in np.lexsort((np.abs(here - t[begin]), begin)).tolist():
+            if node is None or begin[k] != last:
+                last = int(begin[k])
+                node = node_at(drive.solver, drive.path, float(t[last]), rows.v[last])
+            track, end = follow(drive.solver, drive.path, node, float(here[k]))
+            if end is None:
+                node = track[-1] if track else node
+                reached.append(k)
+                nodes.append(node)
+        if not nodes:
+            return number[:0], rows.take(slice(0))
+        solved = rows_of_nodes(nodes)
+        found = solved.with_columns(
+            status=np.full(len(nodes), CONVERGED, dtype=np.int8),
+            condition=np.array([node.condition for node in nodes]),
+        )
+        return number[reached], found
 
     def _inputs(self, row: IndexArray, here: Array) -> Array:
         """All inputs as neighbouring rows name them, (K, p) file units."""

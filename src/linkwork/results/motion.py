@@ -235,10 +235,14 @@ class Motion:
         return float(asked.number(self.located(asked).rows))
 
     def is_of_rows(self, name: str) -> bool:
-        """Whether a number of the motion is that of its rows, and follows their distance."""
+        """Whether a number of the motion is that of its rows, and follows their distance.
+
+        Rates and forces may grow without bound towards dead points.
+        """
         asked = self.quantities.find_of_motion(name)
+        ends = asked.of.needs > 0 and LimitKind.DEAD_POINT.word in self.limit
         known = self.between is None or asked.of.group is Group.EVIDENCE
-        return known or asked.quantity.places is None
+        return known or ends or asked.quantity.places is None
 
     def located(self, asked: AskedOfMotion) -> LocatedRows:
         """The rows with further ones that make a number of the motion exact."""

@@ -80,7 +80,7 @@ def test_the_swing_of_a_rocker_and_its_sensitivities_are_those_of_its_dead_centr
         return complex(math.pi - np.arccos((c**2 + 100.0**2 - (b + sign * a) ** 2) / (200.0 * c)))
 
     def swing(a: complex, b: complex, c: complex) -> complex:
-        return np.degrees(1.0) * (angle(-1.0, a, b, c) - angle(1.0, a, b, c))
+        return math.degrees(1.0) * (angle(-1.0, a, b, c) - angle(1.0, a, b, c))
 
     found = bar(step).sensitivity("stroke(rocker)")
     assert float(found.value) == pytest.approx(swing(40, 120, 80).real, rel=1e-13)

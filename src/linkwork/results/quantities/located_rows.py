@@ -70,7 +70,8 @@ def locate_rows(
     """The rows with those that make the number exact, as far as positions can be solved there."""
     order, further = np.arange(len(rows.input)), list[SolvedTable]()
     places = asked.quantity.places
-    if between is None or places is None or asked.of.group is Group.EVIDENCE or len(order) < 2:
+    still = asked.of.group in (Group.EVIDENCE, Group.INPUT)
+    if between is None or places is None or still or len(order) < 2:
         return LocatedRows(rows=rows, further=further, order=order)
     rows, before, count = replace(rows, joined=between.joined), order, len(order)
     most = _POLE * np.nanmax(np.abs(rows.value), initial=0.0)

@@ -12,6 +12,7 @@ from typing import Any
 import numpy as np
 
 from linkwork.foundation.arrays import AnyArray, Array
+from linkwork.foundation.rounding import EPSILON
 from linkwork.results.quantities.definition import (
     MotionQuantity,
     MotionRows,
@@ -26,6 +27,8 @@ __all__ = ["PATH_LENGTH"]
 _POINTS = 5  # of Gauss' rule
 _EXACT = 1e-13  # of the length
 _ORDERS = 7.0 / 5.0  # of the error of a step by the quintic, to that by the cubic of the derivative
+_ROUNDING = 64.0  # of places, in the length of a step
+_AT_ONCE = 48  # steps that are halved, the worst ones: next to dead points there are more and more
 _SHORT = 1e-4  # of the length: chords next to a dead point
 
 
@@ -102,8 +105,13 @@ def _places(rows: MotionRows, _: tuple[float, ...]) -> Places:
     chord = np.abs(np.diff(rows.value))
     whole = np.nansum(chord)
     with np.errstate(all="ignore"):
-        error = part * (missed / part) ** _ORDERS
-        long = np.flatnonzero(rows.joined & (error * len(part) > _EXACT * whole))
+        # where the path turns back neither is of its order
+        back = (rows.first[:-1] * rows.first[1:].conj()).real <= 0.0
+        error = np.where(back, missed, part * (missed / part) ** _ORDERS)
+        rounding = _ROUNDING * EPSILON * np.nanmax(np.abs(rows.value))
+        inexact = (error * len(part) > _EXACT * whole) & (missed > rounding)
+        worst = np.where(rows.joined & inexact, error, 0.0)
+        long = np.argsort(-worst, kind="stable")[: min(_AT_ONCE, np.count_nonzero(worst))]
         near = rows.joined & ~np.isfinite(part) & (chord > _SHORT * whole)
     row = np.flatnonzero(near)
     # the end without rates is the dead point
