@@ -75,7 +75,7 @@ class RowsBetween:
 
         Rows that lead to none have the status of a lost branch.
         """
-        drive, solver, rows = self._drive, self._drive.solver, self.rows
+        solver, rows = self._drive.solver, self.rows
         t, named = self._places
         here = t[row] + (at - named[row])
         found = SolvedRows.blank(

@@ -105,11 +105,11 @@ def _places(rows: MotionRows, _: tuple[float, ...]) -> Places:
     chord = np.abs(np.diff(rows.value))
     whole = np.nansum(chord)
     with np.errstate(all="ignore"):
-        # where the path turns back neither is of its order
+        # where the path turns back neither rule is of its order
         back = (rows.first[:-1] * rows.first[1:].conj()).real <= 0.0
-        error = np.where(back, missed, part * (missed / part) ** _ORDERS)
+        error = np.where(back, part, part * (missed / part) ** _ORDERS)
         rounding = _ROUNDING * EPSILON * np.nanmax(np.abs(rows.value))
-        inexact = (error * len(part) > _EXACT * whole) & (missed > rounding)
+        inexact = (error * len(part) > _EXACT * whole) & (back | (missed > rounding))
         worst = np.where(rows.joined & inexact, error, 0.0)
         long = np.argsort(-worst, kind="stable")[: min(_AT_ONCE, np.count_nonzero(worst))]
         near = rows.joined & ~np.isfinite(part) & (chord > _SHORT * whole)
