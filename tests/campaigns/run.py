@@ -21,6 +21,7 @@ from tests.campaigns.commands import PARTS as COMMANDS, command_campaign
 from tests.campaigns.configurations import configuration_campaign
 from tests.campaigns.dead_points import dead_point_campaign
 from tests.campaigns.defects import defect_campaign
+from tests.campaigns.extremes import extreme_campaign
 from tests.campaigns.families import family_campaign
 from tests.campaigns.forces import force_campaign
 from tests.campaigns.fuzz import fuzz_campaign
@@ -54,6 +55,7 @@ _PART = 50
 # every length of train and every mechanism is a part; tasks of poses are solved many at a time
 _OWN_PART = {
     "commands": 1,
+    "extremes": 10,
     "goals": 1,
     "gradients": 1,
     "improve": 1,
@@ -131,6 +133,10 @@ def _forces(part: int) -> tuple[Counter[str], list[str]]:
     return force_campaign(part, _PART)
 
 
+def _extremes(part: int) -> tuple[Counter[str], list[str]]:
+    return extreme_campaign(part, _OWN_PART["extremes"])
+
+
 def _links(part: int) -> tuple[Counter[str], list[str]]:
     return link_campaign(part, _PART)
 
@@ -185,6 +191,7 @@ CAMPAIGNS: dict[str, tuple[Callable[[int], tuple[Counter[str], list[str]]], int]
     "forces": (_forces, 2_000),
     "switching-motions": (_switching, 2_000),
     "orders": (_orders, 2_000),
+    "extremes": (_extremes, 2_000),
     "precision-points": (_precision_points, 200),
     "nine-points": (nine_point_campaign, 100),
     "poses": (_poses, 100_000),

@@ -410,9 +410,9 @@ def test_sweep_tells_which_ways_and_names_there_are(run: Run) -> None:
 
 def test_sweep_gives_the_range_of_unknowns_outputs_and_traced_points(run: Run) -> None:
     lines = run("sweep", "slider-crank.toml").stdout.splitlines()
-    assert "  range      minimum   at     maximum   at  unit" in lines
-    assert "  rod     -19.471221   90   19.471221  270  deg" in lines
-    assert "  stroke   80.000     180  160.000       0  mm" in lines
+    assert "  range of rows     minimum   at     maximum   at  unit" in lines
+    assert "  rod            -19.471221   90   19.471221  270  deg" in lines
+    assert "  stroke          80.000     180  160.000       0  mm" in lines
     rows = [line.split()[0] for line in run("sweep", "four-bar.toml").stdout.splitlines() if line]
     assert rows[-6:-1] == ["coupler", "rocker", "mu", "P.x", "P.y"]
 

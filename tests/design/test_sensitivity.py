@@ -116,8 +116,9 @@ def test_numbers_of_a_motion_have_the_derivatives_of_their_rows(of: str) -> None
     other = extrapolated(
         lambda x: {of: changed_by(mechanism, "O2 A", x).sweep().value(of)}, 40.0, 0.1
     )
-    # max takes a row; the others sum rounding of 73 rows over steps of 0.025
-    assert found["O2 A"] == pytest.approx(other[of], rel=1e-9)
+    # the slider turns back within 1e-6 of the last step that is halved there
+    rel = 1e-7 if of.startswith("path_length") else 1e-9
+    assert found["O2 A"] == pytest.approx(other[of], rel=rel)
 
 
 def around(start: float, stop: float, step: float = 1.0) -> lw.Mechanism:

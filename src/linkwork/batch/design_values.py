@@ -29,7 +29,7 @@ class DesignValues(QuantityValues):
     Parameters
     ----------
     designs : Designs
-    inputs : (R, p)
+    inputs : (R, p) or (R, p, D)
         Requested inputs, file units.
     v : (n, R, D)
         Unknowns, internal units; NaN where there is no position.
@@ -73,7 +73,7 @@ class DesignValues(QuantityValues):
                 return Jet(self.v[k], _NONE, _NONE)
             return Jet(self.v[k], rates.first[k], rates.second[k])
         column = self.inputs[:, k - n] * self.model.input_scale[k - n]
-        value = np.where(self.lost, np.nan, column[:, None])
+        value = np.where(self.lost, np.nan, column if column.ndim > 1 else column[:, None])
         # a row found whole turns away has other outputs, where angles enter without a sine
         if k == n and self.turns.any():
             value = value + self.turns * FULL_TURN

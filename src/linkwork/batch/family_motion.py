@@ -14,6 +14,7 @@ from linkwork.batch.design_efforts import design_efforts
 from linkwork.batch.design_values import DesignValues
 from linkwork.batch.designs import Designs
 from linkwork.batch.limits import FamilyLimits
+from linkwork.batch.located_numbers import located_number
 from linkwork.batch.rates import (
     DesignEvidence,
     DesignRates,
@@ -35,7 +36,7 @@ from linkwork.foundation.names import find_spelling
 from linkwork.foundation.optional_packages import installed_with
 from linkwork.foundation.status import Status
 from linkwork.motion.leading_input import leading_input
-from linkwork.results.quantities.asked import Asked, Group
+from linkwork.results.quantities.asked import Asked, AskedOfMotion, Group
 from linkwork.results.quantities.registry import Quantities
 from linkwork.results.quantity import Rate
 from linkwork.results.series import Series
@@ -239,12 +240,18 @@ class FamilyMotion:
         """
         asked = self.quantities.find_of_motion(name)
         if not asked.follows:
-            return asked.evaluate(self.leading, self[asked.of.name])
+            return self.number(asked, self[asked.of.name])
         found = np.empty(len(self))
         for part, values in self._moving():
             columns = (column.T for column in asked.columns(values))
             found[part] = asked.evaluate(self.leading, *columns)
         return found
+
+    def number(self, asked: AskedOfMotion, value: Array) -> Array:
+        """A number (D,) that follows from the values of a quantity (D, R) alone; extremes are
+        located between the rows.
+        """
+        return located_number(self.designs, self.rows, asked, value, self.threads)
 
     def trace(self, point: str) -> ComplexArray:
         """The path of a point as x + iy, (D, R); ``trace("B.velocity")`` is its velocity."""

@@ -145,6 +145,10 @@ class PlaceReading:
     def run(self, program: PlaceProgram, rows: DesignRows, threads: int) -> Array:
         """Run at the inputs of the solved positions, on the straight line of the table."""
         model = self.designs.base
+        if rows.inputs is not None:
+            v = np.concatenate([rows.v, rows.inputs.swapaxes(0, 1)])
+            none = np.zeros((v.shape[1], 0))
+            return at_places(program, self.coefficients, v, none, rows.turns, threads)
         lead, rate = leading_input(model.rows)
         inputs = Drive.through(model, model.rows[0], rate, lead).path.at(model.rows[:, lead])
         return at_places(program, self.coefficients, rows.v, inputs, rows.turns, threads)

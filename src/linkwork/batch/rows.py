@@ -24,7 +24,8 @@ class DesignRows:
     (R, D): codes. ``radius`` (R, D): of the proof, weighted, NaN without one; (0, D) if none is
     requested. ``limits`` (2, D): lower and upper end of the branch, ``limit_kinds`` (2, D): their
     kinds, see :func:`linkwork.batch.limits.ends_as_limits`; NaN without a position.
-    ``alone`` (D,): designs computed one at a time; ``own``: their own results.
+    ``alone`` (D,): designs computed one at a time; ``own``: their own results. ``inputs``
+    (R, p, D): if designs have inputs of their own instead of the table's.
     """
 
     v: Array
@@ -35,6 +36,7 @@ class DesignRows:
     limit_kinds: StatusArray
     alone: BoolArray
     own: dict[int, SolvedRows] = field(default_factory=dict)
+    inputs: Array | None = None
 
     @classmethod
     def blank(

@@ -18,10 +18,13 @@ from linkwork.mechanism.driven_input import Input
 from linkwork.motion import sweep
 from linkwork.motion.limits import BranchEnd
 from linkwork.motion.model import Model
+from linkwork.motion.motion_of_rows import motion_of_rows
+from linkwork.motion.rows_between import RowsBetween
 from linkwork.motion.sweeping import sweep_rows
 from linkwork.numerics.rows import SolvedRows
+from linkwork.results.motion import Motion
 
-__all__ = ["leave_open", "message_single", "sweep_single"]
+__all__ = ["leave_open", "message_single", "single_motion", "sweep_single"]
 
 
 def _at_shared_inputs(designs: Designs, k: int) -> Model:
@@ -87,6 +90,13 @@ def _note_way(
         # a row reached in the other direction has an input whole turns away
         gap = (rows.v[:, len(found.v)] - base.rows[:, 0]) / FULL_TURN
         found.turns[:, k] = np.round(np.where(np.isnan(gap), 0.0, gap))
+
+
+def single_motion(designs: Designs, k: int, found: DesignRows) -> Motion:
+    """The motion of a design swept alone."""
+    model, rows = _at_shared_inputs(designs, k), found.own[k]
+    motion = motion_of_rows(model, rows, "", np.zeros(len(rows), dtype=bool))
+    return replace(motion, between=RowsBetween(model, rows))
 
 
 def message_single(designs: Designs, k: int) -> str:

@@ -70,4 +70,5 @@ def _numbers(motion: Motion, names: Sequence[str]) -> Iterator[tuple[str, str]]:
     """Numbers of the whole motion with their units."""
     for name in names:
         unit = motion.quantities.find_of_motion(name).unit
-        yield name, f"{short(motion.value(name))} {unit}".rstrip()
+        value = f"{short(motion.value(name))} {unit}".rstrip()
+        yield name, f"{value}, of the rows" if motion.is_of_rows(name) else value

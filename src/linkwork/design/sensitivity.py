@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, cast
 
 import numpy as np
 
@@ -297,15 +297,12 @@ def _number(model: Model, motion: Motion, of: str) -> tuple[float, str, list[_Pa
         raise UnknownNameError(
             f'"{of}" has no sensitivity: ask for it by the input, such as "{asked.of.own.name}.d1"'
         )
-    value, rows = motion.value(of), rows_of(model, motion)
-    if asked.follows:
-        columns: tuple[Array, ...] = asked.columns(motion)
-    else:
-        columns = (motion[asked.of.name],)
-    leading = motion.inputs[asked.names.lead] * model.input_scale[leading_input(model.rows)[0]]
-    whole = asked.rows(leading, *columns)
+    located = motion.located(asked)
+    value = float(asked.number(located.rows))
     with np.errstate(all="ignore"):
-        slopes = asked.quantity.slopes(whole, asked.numbers)
+        slopes = asked.quantity.slopes(located.rows, asked.numbers)
+    further = cast("Sequence[Motion]", located.further)  # what a motion solves
+    rows = rows_of(model, motion, *further).take(located.order)
     return value, asked.unit, list(_parts(rows, slopes, asked))
 
 

@@ -27,6 +27,7 @@ from linkwork.motion.model import Model
 from linkwork.motion.motion_of_rows import fitting, message_of, motion_of_rows
 from linkwork.motion.path_entry import enter_path
 from linkwork.motion.redundancy import FITS, misfit
+from linkwork.motion.rows_between import RowsBetween
 from linkwork.motion.start import Start, first_position
 from linkwork.motion.sweep_table import NamedEnd, SweepTable
 from linkwork.motion.tracking import track_to
@@ -377,6 +378,7 @@ class _Sweep:
             limits=tuple(self.limits),
             output_limits=tuple(self.output_limits),
             circuit=self.circuit,
+            between=RowsBetween(self.model, rows),
         )
         return replace(motion, message=message_of(motion, self.model))
 

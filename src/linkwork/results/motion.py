@@ -25,7 +25,8 @@ from linkwork.foundation.status import Status
 from linkwork.mechanism.skeleton import Skeleton
 from linkwork.results.failure import Failure
 from linkwork.results.limit import Limit, LimitKind, OutputLimit
-from linkwork.results.quantities.asked import Asked, Group
+from linkwork.results.quantities.asked import Asked, AskedOfMotion, Group
+from linkwork.results.quantities.located_rows import Between, LocatedRows, columns_of, locate_rows
 from linkwork.results.quantities.registry import EVIDENCE, Quantities
 from linkwork.results.quantity import Rate, Units
 from linkwork.results.series import Series
@@ -36,7 +37,17 @@ __all__ = ["Limit", "LimitKind", "Motion", "OutputLimit"]
 _FEW_ROWS = 4000  # of motions that are drawn
 
 
-@internal("quantities", "units", "skeleton", "quantity", "own", "place")
+@internal(
+    "quantities",
+    "units",
+    "skeleton",
+    "quantity",
+    "own",
+    "place",
+    "located",
+    "between",
+    "is_of_rows",
+)
 @dataclass(frozen=True, kw_only=True, eq=False, repr=False)
 class Motion:
     """The positions of a mechanism over a table of N input values.
@@ -107,6 +118,8 @@ class Motion:
     stop_forces, stop_impulses : Mapping[str, array (N,)]
         Of a simulation: the force or moment with which stops push a quantity, and the impulse of
         their shocks, by its name; positive where it makes the quantity grow.
+    between : callable, optional
+        Solves positions between rows; without it extremes are those of the rows.
 
     Examples
     --------
@@ -155,6 +168,7 @@ class Motion:
     flywheel_energy: Array | None = None
     stop_forces: Mapping[str, Array] = FrozenDict()
     stop_impulses: Mapping[str, Array] = FrozenDict()
+    between: Between | None = None
 
     def __post_init__(self) -> None:
         for field in (*EVIDENCE, "added", "q"):
@@ -216,6 +230,7 @@ class Motion:
         name : str
             ``min(…)``, ``max(…)``, ``mean(…)``, ``stroke(…)``, ``time_ratio(…)``,
             ``path_length(…)``, ``dwell(…, band)``; the value is in file units, NaN if undefined.
+            Extremes are located between the rows.
 
         Raises
         ------
@@ -229,10 +244,28 @@ class Motion:
         73.78
         """
         asked = self.quantities.find_of_motion(name)
+        return float(asked.number(self.located(asked).rows))
+
+    def is_of_rows(self, name: str) -> bool:
+        """Whether a number of the motion is that of its rows, and follows their distance.
+
+        Rates and forces may grow without bound towards dead points.
+        """
+        asked = self.quantities.find_of_motion(name)
+        ends = asked.of.needs > 0 and LimitKind.DEAD_POINT.word in self.limit
+        known = self.between is None or asked.of.group is Group.EVIDENCE
+        return known or ends or asked.quantity.places is None
+
+    def located(self, asked: AskedOfMotion) -> LocatedRows:
+        """The rows with further ones that make a number of the motion exact."""
+        asked.of.check_rate(self.speed)
         names = asked.names
         leading = self.inputs[names.lead] * names.units.scale(names.inputs[names.lead])
-        columns = asked.columns(self) if asked.follows else (self[asked.of.name],)
-        return float(asked.evaluate(leading, *columns))
+        if asked.of.group in (Group.EVIDENCE, Group.INPUT):
+            columns: tuple[Array, ...] = (self[asked.of.name],)
+        else:
+            columns = columns_of(asked, self, self.speed)
+        return locate_rows(asked, asked.rows(leading, *columns), self.between, self.speed)
 
     def series(self, name: str) -> Series:
         """A quantity with both derivatives with respect to the leading input.

@@ -126,10 +126,10 @@ def numbers_of(motion: Motion, asked: Sequence[str] = ()) -> Iterator[MotionNumb
             continue
         if name in usual and not math.isfinite(value):
             continue  # a stroke that does not return has no time ratio
-        call = Call.read(name)
+        call, of_rows = Call.read(name), ", of the rows" if motion.is_of_rows(name) else ""
         yield MotionNumber(
             name=name,
-            shown=f"{call.word.replace('_', ' ')} of {printed_name(call.of)}",
+            shown=f"{call.word.replace('_', ' ')} of {printed_name(call.of)}{of_rows}",
             unit=quantity.unit,
             value=value if math.isfinite(value) else None,
         )

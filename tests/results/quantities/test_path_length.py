@@ -38,7 +38,8 @@ def test_a_cycloid_is_eight_radii_long() -> None:
 def test_designs_have_it_as_they_have_it_alone() -> None:
     mechanism, cranks = lw.example("four-bar"), [38.0, 40.0, 42.0]
     found = mechanism.family({"O2 A": cranks}).sweep().value("path_length(B)")
-    assert found[1] == pytest.approx(mechanism.sweep().value("path_length(B)"), rel=1e-11)
+    # B turns back: the steps in which it does are halved in a motion only
+    assert found[1] == pytest.approx(mechanism.sweep().value("path_length(B)"), rel=1e-6)
     assert (np.diff(found) > 0).all()
 
 

@@ -54,7 +54,7 @@ class Measured:
         asked = self.motion.quantities.find_of_motion(name)
         if asked.follows:
             return self.motion.value(name)
-        return asked.evaluate(self.motion.leading, self[asked.of.name])
+        return self.motion.number(asked, self[asked.of.name])
 
 
 @dataclass(frozen=True)

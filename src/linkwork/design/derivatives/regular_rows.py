@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from linkwork.foundation.arrays import Array, BoolArray
+from linkwork.foundation.arrays import Array, BoolArray, IndexArray
 from linkwork.motion.model import Model
 from linkwork.results.motion import Motion
 from linkwork.results.position import Position
@@ -24,6 +24,10 @@ class RegularRows:
     regular: BoolArray
     solved: Solved
 
+    def take(self, order: IndexArray) -> RegularRows:
+        """Rows in another order."""
+        return RegularRows(self.v[order], self.found[order], self.regular[order], self.solved)
+
 
 def row_of(model: Model, position: Position) -> RegularRows:
     """One position as a row."""
@@ -32,12 +36,19 @@ def row_of(model: Model, position: Position) -> RegularRows:
     return RegularRows(v, found, _rates_exist(model, position, 1), position)
 
 
-def rows_of(model: Model, motion: Motion) -> RegularRows:
-    """The rows of a motion."""
-    columns = [motion.inputs[x.name] * s for x, s in zip(
-        model.equations.inputs, model.input_scale, strict=True)]  # fmt: skip
-    v = np.concatenate([motion.q, np.stack(columns, axis=1)], axis=1)
-    return RegularRows(v, motion.found, _rates_exist(model, motion, len(motion)), motion)
+def rows_of(model: Model, motion: Motion, *further: Motion) -> RegularRows:
+    """The rows of a motion, and those of further ones behind them."""
+    parts = (motion, *further)
+    v = [
+        np.column_stack(
+            [each.q, *(each.inputs[x.name] * s for x, s in zip(
+                model.equations.inputs, model.input_scale, strict=True))]
+        )
+        for each in parts
+    ]  # fmt: skip
+    found = np.concatenate([each.found for each in parts])
+    regular = np.concatenate([_rates_exist(model, each, len(each)) for each in parts])
+    return RegularRows(np.concatenate(v), found, regular, motion)
 
 
 def _rates_exist(model: Model, solved: Solved, count: int) -> BoolArray:

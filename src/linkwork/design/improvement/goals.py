@@ -15,6 +15,7 @@ from typing import Any
 
 import numpy as np
 
+from linkwork.batch.located_extremes import interpolated_extremes, step_of
 from linkwork.design.improvement.between_rows import BetweenRows
 from linkwork.design.improvement.settings import Goal
 from linkwork.design.improvement.solved_lanes import LanePositions
@@ -308,12 +309,18 @@ class _NumberMisses(Misses):
         columns = asked.columns(rows, rows.speed)[: 1 + asked.quantity.needs]
         shape = found.shape
         plain = [found.plain(column) for column in columns]
+        weights: list[AnyArray] = [np.zeros(shape, dtype=part.dtype) for part in plain]
         lost = [np.full(shape, np.nan)] * (3 - len(plain))
-        numbers = asked.evaluate(self.at, *plain, *lost)
+        located = bool(asked.quantity.sides) and shape[1] > 2
+        if located:
+            step = step_of(self.at, asked.names.inputs[asked.names.lead])
+            sides = asked.quantity.sides
+            numbers, weights[0] = interpolated_extremes(self.at, plain[0], sides, step)
+        else:
+            numbers = asked.evaluate(self.at, *plain, *lost)
         # a design that loses positions has no number to compare
         numbers[(~found.found.reshape(shape) & self.there).any(axis=1)] = np.nan
-        weights: list[AnyArray] = [np.zeros(shape, dtype=part.dtype) for part in plain]
-        for k in np.flatnonzero(np.isfinite(numbers)):
+        for k in () if located else np.flatnonzero(np.isfinite(numbers)):
             own = [part[k] for part in (*plain, *lost)]
             slopes = _one_sided_slopes(asked, self.at, *own)
             for weight, part in zip(

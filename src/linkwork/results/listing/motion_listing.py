@@ -195,7 +195,7 @@ def range_columns(
         return Column(header="at", cells=cells, align="point")
 
     return [
-        Column(header="range", cells=[s.quantity.name for s in found]),
+        Column(header="range of rows", cells=[s.quantity.name for s in found]),
         Column(header="minimum", cells=cells[: len(found)], align="point"),
         places(low),
         Column(header="maximum", cells=cells[len(found) :], align="point"),

@@ -200,7 +200,10 @@ class AskedOfMotion:
         value, first, second : (…, R)
             See :meth:`columns`.
         """
-        rows = self.rows(leading, value, first, second)
+        return self.number(self.rows(leading, value, first, second))
+
+    def number(self, rows: MotionRows) -> Array:
+        """The number of every motion, (…,)."""
         with np.errstate(all="ignore"):
             return np.asarray(self.quantity.evaluate(rows, self.numbers), dtype=float)
 

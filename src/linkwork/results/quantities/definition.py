@@ -10,9 +10,9 @@ from typing import Any, Protocol
 import numpy as np
 
 from linkwork.expression.jets import Jet
-from linkwork.foundation.arrays import Array, BoolArray
+from linkwork.foundation.arrays import Array, BoolArray, IndexArray
 from linkwork.foundation.frozen import FrozenDict
-from linkwork.foundation.rounding import EQUAL_ROWS
+from linkwork.foundation.rounding import EPSILON, EQUAL_ROWS
 from linkwork.mechanism.dyad import Dyad, dyads_of
 from linkwork.mechanism.skeleton import Skeleton
 from linkwork.results.quantity import Kind, Units
@@ -22,6 +22,7 @@ __all__ = [
     "MechanismNames",
     "MotionQuantity",
     "MotionRows",
+    "Places",
     "RowQuantity",
     "RowSlopes",
     "Solved",
@@ -147,6 +148,8 @@ class MotionRows:
         [rad] or [length] per unit of the input in files.
     turn : float
         A full turn of the leading input [rad], 0 if it is no angle.
+    joined : array of bool (R - 1,), optional
+        Between which neighbouring rows of the only motion positions can be solved.
     """
 
     input: Array
@@ -155,6 +158,7 @@ class MotionRows:
     second: Array
     unit: float
     turn: float
+    joined: BoolArray | None = None
 
     def ascending(self) -> MotionRows | None:
         """The rows in order of increasing input; ``None`` if the input reverses between them."""
@@ -164,7 +168,10 @@ class MotionRows:
         if (steps > 0.0).any():
             return None
         value, first, second = (x[..., ::-1] for x in (self.value, self.first, self.second))
-        return replace(self, input=self.input[::-1], value=value, first=first, second=second)
+        joined = None if self.joined is None else self.joined[::-1]
+        return replace(
+            self, input=self.input[::-1], value=value, first=first, second=second, joined=joined
+        )
 
     @property
     def cycle(self) -> BoolArray:
@@ -234,6 +241,11 @@ class RowSlopes:
         return RowSlopes(value=value, first=first, second=second)
 
 
+_RESTS = 1e-4  # of the range of the input: an extreme over more is a rest
+#: Places between rows: the row before each, and the part of the step from there on.
+Places = tuple[IndexArray, Array]
+
+
 @dataclass(frozen=True, kw_only=True)
 class MotionQuantity:
     """A number of a whole motion: ``stroke(s16)``.
@@ -257,6 +269,10 @@ class MotionQuantity:
         ``number``.
     slopes : callable
         As ``evaluate``, its derivatives for one motion, (R,).
+    places : callable, optional
+        As ``evaluate``, where further rows make the number of one motion exact: none once it is.
+    sides : (float, ...)
+        Of an extreme: 1 for the largest value, -1 for the smallest, both for their difference.
     """
 
     word: str
@@ -267,6 +283,8 @@ class MotionQuantity:
     numbers: tuple[str, ...] = ()
     needs: int = 0
     measures: str = "quantity"
+    places: Callable[[MotionRows, tuple[float, ...]], Places] | None = None
+    sides: tuple[float, ...] = ()
 
 
 def at_extreme(rows: MotionRows, side: float) -> Array:
@@ -275,8 +293,17 @@ def at_extreme(rows: MotionRows, side: float) -> Array:
     """
     value = side * rows.value
     best = np.fmax.reduce(value)
-    there = value >= best - EQUAL_ROWS * np.abs(best)
-    # the first and the last row of a turn are one position
-    around = there.sum() == 2 and there[0] and there[-1] and bool(rows.cycle)
-    weight = 1.0 / there.sum() if there.sum() == 1 or around else np.nan
-    return np.where(there, weight, 0.0)
+    there = np.flatnonzero(value >= best - EQUAL_ROWS * np.abs(best))
+    # neighbouring rows show one extreme, unless the quantity rests there
+    runs = np.split(there, np.flatnonzero(np.diff(there) > 1) + 1)
+    peaks = [run[value[run] >= best - 8.0 * EPSILON * np.abs(best)] for run in runs]
+    spans = [float(np.ptp(rows.input[peak])) for peak in peaks if len(peak)]
+    rests = max(spans, default=0.0) > _RESTS * np.ptp(rows.input)
+    if len(runs) == 2 and there[0] == 0 and there[-1] == len(value) - 1 and rows.cycle:
+        runs = [there]  # the first and the last row of a turn are one position
+    weight = np.zeros(len(value))
+    # of rows that are equal to rounding the one at which the quantity turns
+    highest = there[value[there] >= best - 8.0 * EPSILON * np.abs(best)]
+    turning = np.nan_to_num(np.abs(rows.first[highest]), nan=np.inf).argmin()
+    weight[highest[turning]] = 1.0 if len(runs) == 1 and not rests else np.nan
+    return weight

@@ -4,7 +4,8 @@ The dwell is the longest range of the input over which the quantity stays within
 given height, wherever this band lies. Between rows the quantity is the cubic through values and
 derivatives at the rows. Eighths of their distance decide which range is the longest; its ends, and
 the extreme from which the band is measured, are those of the cubic. A motion of one whole turn
-continues from its end at its start.
+continues from its end at its start. A motion adds rows at the ends and at the extreme until they
+stay where they are.
 """
 
 from __future__ import annotations
@@ -21,11 +22,13 @@ from linkwork.foundation.rounding import EQUAL_ROWS
 from linkwork.results.quantities.definition import (
     MotionQuantity,
     MotionRows,
+    Places,
     RowSlopes,
     cubic,
     cubic_weight_slopes,
     cubic_weights,
 )
+from linkwork.results.quantities.extreme_places import NOWHERE
 
 __all__ = ["DWELL"]
 
@@ -222,6 +225,21 @@ def _range_slopes(rows: MotionRows, band: float, factors: tuple[float, float]) -
     return RowSlopes(value=value, first=first).in_order_of(rows)
 
 
+def _places(rows: MotionRows, numbers: tuple[float, ...]) -> Places:
+    """Where the longest range begins and ends, and the extremes that it is measured from."""
+    up, band = rows.ascending(), numbers[0]
+    if up is None or up.joined is None or not np.isfinite(up.value).any():
+        return NOWHERE
+    curve = _Curve(up)
+    found = [place for end in _ends(curve, band) if end.moves[0] for place in (end.at, end.extreme)]
+    pairs = [curve.piece(place) for place in found]
+    row = np.array([int(piece[0]) for piece, _ in pairs], dtype=np.intp)
+    part = np.array([float(s[0]) for _, s in pairs])
+    there = up.joined[row]
+    row, part = row[there], part[there]
+    return (row, part) if up.input[0] == rows.input[0] else (curve.steps - 1 - row, 1.0 - part)
+
+
 def _longest_eighths(curve: _Curve, band: float) -> tuple[IndexArray, IndexArray, Array]:
     """Where the longest range begins and how many eighths it has, (D,); values with a second turn,
     (D, F).
@@ -316,6 +334,7 @@ DWELL = (
         numbers=("band",),
         needs=1,
         measures="input",
+        places=_places,
     ),
     MotionQuantity(
         word="dwell_start",
@@ -325,5 +344,6 @@ DWELL = (
         numbers=("band",),
         needs=1,
         measures="input",
+        places=_places,
     ),
 )

@@ -1,4 +1,4 @@
-"""The smallest, largest and mean value of a quantity at the rows of a motion."""
+"""The smallest and largest value of a quantity over a motion, and its mean over the rows."""
 
 from __future__ import annotations
 
@@ -8,9 +8,11 @@ from linkwork.foundation.arrays import Array
 from linkwork.results.quantities.definition import (
     MotionQuantity,
     MotionRows,
+    Places,
     RowSlopes,
     at_extreme,
 )
+from linkwork.results.quantities.extreme_places import extreme_places
 
 __all__ = ["EXTREMES"]
 
@@ -45,15 +47,30 @@ def _mean_slopes(rows: MotionRows, _: tuple[float, ...]) -> RowSlopes:
     return RowSlopes(value=there / max(int(there.sum()), 1))
 
 
+def _least_places(rows: MotionRows, _: tuple[float, ...]) -> Places:
+    return extreme_places(rows, -1.0)
+
+
+def _most_places(rows: MotionRows, _: tuple[float, ...]) -> Places:
+    return extreme_places(rows, 1.0)
+
+
 EXTREMES = (
     MotionQuantity(
         word="min",
-        about="smallest value at the rows found",
+        about="smallest value",
         evaluate=_least,
         slopes=_least_slopes,
+        places=_least_places,
+        sides=(-1.0,),
     ),
     MotionQuantity(
-        word="max", about="largest value at the rows found", evaluate=_most, slopes=_most_slopes
+        word="max",
+        about="largest value",
+        evaluate=_most,
+        slopes=_most_slopes,
+        places=_most_places,
+        sides=(1.0,),
     ),
     MotionQuantity(
         word="mean",

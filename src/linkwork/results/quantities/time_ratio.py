@@ -1,7 +1,8 @@
 """The time ratio of a quick return: how much longer the slow stroke takes than the quick one.
 
 The input makes one turn at constant speed. The extremes of the quantity are zeros of its
-derivative, found on the cubic through values and derivatives at the rows. The ratio is NaN for a
+derivative, found on the cubic through its values and slopes at the rows next to them; a motion
+adds rows there, a family has those of its table. The ratio is NaN for a
 motion that is not one whole turn or does not return, and for a constant quantity.
 
 References
@@ -17,15 +18,18 @@ from linkwork.foundation.arrays import Array
 from linkwork.results.quantities.definition import (
     MotionQuantity,
     MotionRows,
+    Places,
     RowSlopes,
-    cubic,
     cubic_weight_slopes,
     cubic_weights,
 )
+from linkwork.results.quantities.extreme_places import (
+    extreme_places,
+    joined_places,
+    roots_of_cubics,
+)
 
 __all__ = ["TIME_RATIO"]
-
-_HALVINGS = 52
 
 _Extremes = tuple[tuple[Array, Array, Array], ...]
 
@@ -95,12 +99,13 @@ def _turning(rows: MotionRows, row: Array, side: float) -> tuple[Array, Array, A
     step = np.diff(rows.input)[np.mod(begin, last)]
     ends = at(rows.first, begin), at(rows.first, begin + 1)
     slopes = step * at(rows.second, begin), step * at(rows.second, begin + 1)
-    low, high = np.zeros(row.shape), np.ones(row.shape)
-    for _ in range(_HALVINGS):
-        middle = 0.5 * (low + high)
-        ahead = side * cubic(middle, ends, slopes) > 0.0
-        low, high = np.where(ahead, middle, low), np.where(ahead, high, middle)
-    return np.mod(begin, last), step, high
+    first, second = ((side * begin, side * end) for begin, end in (ends, slopes))
+    part = roots_of_cubics(first, second, np.zeros(row.shape), np.ones(row.shape))
+    return np.mod(begin, last), step, part
+
+
+def _places(rows: MotionRows, _: tuple[float, ...]) -> Places:
+    return joined_places(extreme_places(rows, 1.0), extreme_places(rows, -1.0))
 
 
 TIME_RATIO = (
@@ -111,5 +116,6 @@ TIME_RATIO = (
         slopes=_slopes,
         needs=2,
         measures="number",
+        places=_places,
     ),
 )

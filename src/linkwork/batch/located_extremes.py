@@ -1,0 +1,149 @@
+"""Extremes of a quantity between the rows of many designs.
+
+Polynomials through the rows next to the highest ones have the same extreme where rows are close.
+Elsewhere they say where the design is solved once more, in place of the farthest row.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from linkwork.foundation.arrays import Array, BoolArray, IndexArray
+from linkwork.foundation.rounding import EPSILON
+from linkwork.numerics.interpolated_peak import interpolated_peaks, lagrange_weights
+from linkwork.results.quantity import Kind
+
+__all__ = ["Peaks", "highest_values", "interpolated_extremes", "peaks_of", "step_of"]
+
+_ROWS = 9  # of a polynomial
+_PASSES = 8
+_SOME = 24
+_POLE = 1e3  # times the values of rows: there is a pole, not an extreme
+_SHARP = 2.0  # of the range of values: how much an extreme may bend per step squared
+_EXACT = 1e-12  # of the values: what the last row adds, ten times what the next one would
+_SAME_PLACE = 1e-6  # of a step: a place so near to a solved one has the same value to rounding
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Peaks:
+    """Rows (L,) of designs (L,) next to which the largest value of the design may lie.
+
+    ``window`` (L, m): the rows around each.
+    """
+
+    design: IndexArray
+    row: IndexArray
+    window: IndexArray
+
+    def take(self, which: IndexArray | BoolArray) -> Peaks:
+        """Some of them."""
+        return Peaks(design=self.design[which], row=self.row[which], window=self.window[which])
+
+
+def step_of(at: Array, kind: Kind) -> float:
+    """The largest step between inputs (R,), in radians or parts of their range."""
+    step = float(np.abs(np.diff(at)).max())
+    return step if kind is Kind.ANGLE else step / (float(np.ptp(at)) or 1.0)
+
+
+def peaks_of(value: Array, best: Array, side: float, step: float) -> Peaks:
+    """The peaks of values (D, R), with a negative side the dips, that may exceed the best (D,).
+
+    ``step``: see :func:`step_of`. Peaks that no row shows are not seen:
+    two extremes between neighbouring rows.
+    """
+    count = value.shape[1]
+    size = min(_ROWS, count)
+    some = value[:, :: max(1, count // _SOME)]  # about the range
+    worst = (np.fmin if side > 0.0 else np.fmax).reduce(some, axis=1)
+    margin = min(_SHARP * step**2, 1.0) * (best - worst) + 8.0 * EPSILON * side * np.abs(best)
+    # families lie in memory row by row
+    high = (best - margin <= value.T) if side > 0.0 else (best - margin >= value.T)
+    row, design = np.divmod(np.flatnonzero(high), len(value))
+    here, before, after = (side * value[design, np.clip(row + k, 0, count - 1)] for k in (0, -1, 1))
+    may = (here >= np.where(np.isnan(before), here, before)) & (
+        here >= np.where(np.isnan(after), here, after)
+    )
+    design, row = design[may], row[may]
+    known = np.isfinite(value)
+    window, there = np.zeros((len(row), size), dtype=np.intp), np.zeros(len(row), dtype=bool)
+    for shift in sorted(range(size), key=lambda k: abs(k - size // 2)):
+        left = np.flatnonzero(~there)  # rows next to those without a position are off the middle
+        if not len(left):
+            break
+        window[left] = np.clip(row[left] - shift, 0, count - size)[:, None] + np.arange(size)
+        there[left] = known[design[left, None], window[left]].all(axis=1)
+    return Peaks(design=design, row=row, window=window).take(there)
+
+
+def highest_values(
+    peaks: Peaks, at: Array, value: Array, side: float, solve: Callable[[IndexArray, Array], Array]
+) -> Array:
+    """The largest value at every peak, with a negative side less the smallest one, (L,).
+
+    Parameters
+    ----------
+    at : (R,)
+        Increasing or decreasing inputs of the rows.
+    value : (D, R)
+    solve : callable
+        Values times the side at inputs (K,) of peaks by their number (K,), NaN where there is no
+        position.
+    """
+    x, y = at[peaks.window], side * value[peaks.design[:, None], peaks.window]
+    step = np.abs(np.diff(at)).min()
+    each, highest, size = np.arange(len(x)), y.max(axis=1), np.abs(y).max(axis=1)
+    for _ in range(_PASSES):
+        top = y.argmax(axis=1)
+        here, best = x[each, top], y[each, top]
+        low = np.where(x < here[:, None], x, -np.inf).max(axis=1)
+        high = np.where(x > here[:, None], x, np.inf).min(axis=1)
+        low, high = np.where(np.isinf(low), here, low), np.where(np.isinf(high), here, high)
+        with np.errstate(all="ignore"):
+            t, peak, term = interpolated_peaks(x, y, low, high, here)
+        exact = term <= _EXACT * size
+        highest = np.where(exact, np.fmax(peak, best), best)
+        which = np.flatnonzero(~exact & (np.abs(t[:, None] - x).min(axis=1) > _SAME_PLACE * step))
+        if not len(which):
+            break
+        found = solve(which, t[which])
+        good = np.isfinite(found)
+        which, found = which[good], found[good]
+        if not len(which):
+            break
+        away = np.abs(x[which] - t[which, None]).argmax(axis=1)
+        x[which, away], y[which, away] = t[which], found
+    highest = np.fmax(highest, y.max(axis=1))
+    return np.where(highest > _POLE * size, np.inf, highest)
+
+
+def interpolated_extremes(
+    at: Array, value: Array, sides: Sequence[float], step: float
+) -> tuple[Array, Array]:
+    """An extreme of values (D, R), or the sum of several with their sides, on the polynomials
+    through the rows next to it, (D,); the weights of the rows in it, (D, R).
+    """
+    numbers, weights = np.zeros(len(value)), np.zeros(value.shape)
+    for side in sides:
+        row = np.where(np.isnan(value), -np.inf, side * value).argmax(axis=1)
+        each = np.arange(len(value))
+        number, weight = value[each, row], np.zeros(value.shape)
+        weight[each, row] = 1.0
+        peaks = peaks_of(value, number, side, step)
+        x, y = at[peaks.window], side * value[peaks.design[:, None], peaks.window]
+        beside = [at[np.clip(peaks.row + k, 0, len(at) - 1)] for k in (-1, 1)]
+        with np.errstate(all="ignore"):
+            t, peak, _ = interpolated_peaks(x, y, np.minimum(*beside), np.maximum(*beside),
+                                            at[peaks.row])  # fmt: skip
+        order = np.lexsort((peak, peaks.design))
+        # the highest peak of each design
+        last = order[np.diff(peaks.design[order], append=len(value)) > 0]
+        own = peaks.take(last)
+        number[own.design], weight[own.design] = side * peak[last], 0.0
+        weight[own.design[:, None], own.window] = lagrange_weights(x[last], t[last])
+        factor = side if len(sides) > 1 else 1.0
+        numbers, weights = numbers + factor * number, weights + factor * weight
+    return numbers, weights

@@ -1,0 +1,140 @@
+"""Where a quantity is largest or smallest between the rows of one motion."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+
+import numpy as np
+
+from linkwork.foundation.arrays import Array, BoolArray, IndexArray
+from linkwork.foundation.rounding import EPSILON
+from linkwork.results.quantities.definition import MotionRows, Places, cubic
+
+__all__ = ["NOWHERE", "extreme_places", "joined_places", "roots_of_cubics"]
+
+#: No places.
+NOWHERE: Places = np.zeros(0, dtype=np.intp), np.zeros(0)
+
+_HALVINGS = 52
+_SAMPLES = np.linspace(0.0, 1.0, 9)  # of a step between rows
+_POOR = 1e-2  # of the change over a step: cubics that miss so much are no guide
+_FINE = 2.6  # degrees, or parts of the range of which 360 are a turn
+_EIGHTHS = np.arange(1, 8) / 8.0
+
+
+def joined_places(*places: Places) -> Places:
+    """Several places as one."""
+    rows, parts = zip(*places, strict=True)
+    return np.concatenate(rows), np.concatenate(parts)
+
+
+def extreme_places(rows: MotionRows, side: float) -> Places:
+    """Where the largest value of one motion may lie, with a negative side the smallest.
+
+    Places are zeros of the derivative, on the cubic through it and its slope at the rows; where the
+    quantity has no derivatives, the vertex and the eighths of the steps next to the highest rows.
+    """
+    if rows.joined is None or not np.isfinite(rows.value).any():
+        return NOWHERE
+    step, value = np.diff(rows.input), side * rows.value
+    rates, bends = side * step * rows.first[:-1], side * step**2 * rows.second[:-1]
+    ends = rates, side * step * rows.first[1:]
+    slopes = bends, side * step**2 * rows.second[1:]
+    # without a second derivative the first one is linear
+    begin, end = (np.where(np.isnan(x), ends[1] - ends[0], x) for x in slopes)
+    slopes = begin, end
+    smooth = rows.joined & np.isfinite(sum((*ends, *slopes)))
+    with np.errstate(all="ignore"):
+        if not smooth.any():
+            fine = math.radians(_FINE) if rows.turn else np.ptp(rows.input) * _FINE / 360.0
+            coarse = np.flatnonzero(rows.joined & (np.abs(step) > fine))
+            if len(coarse):  # values alone do not show what is between rows
+                return coarse, np.full(len(coarse), 0.5)
+            return _next_to_peaks(rows, value)
+        return joined_places(
+            _zeros(value, ends, slopes, smooth), _towards_dead_points(rows, value, ends, smooth)
+        )
+
+
+_Ends = tuple[Array, Array]
+
+
+def _zeros(value: Array, ends: _Ends, slopes: _Ends, smooth: BoolArray) -> Places:
+    """Where the derivative passes zero downwards, in steps that may hold the largest value."""
+    best = np.fmax.reduce(value)
+    top = np.maximum(value[:-1], value[1:])
+    rate = cubic(_SAMPLES[:, None], ends, slopes)
+    # what the cubic of the derivative misses of the change of the value
+    missed = np.abs(np.diff(value) - 0.5 * (ends[0] + ends[1]) - (slopes[0] - slopes[1]) / 12.0)
+    rise = np.maximum(rate, 0.0).max(axis=0)
+    may = smooth & (top + rise + missed >= best)
+    rounding = 16.0 * EPSILON * np.abs(top)
+    poor = may & (missed > _POOR * np.abs(rate).max(axis=0) + rounding)
+    row = np.flatnonzero(may & ((rate[:-1] > 0.0) & (rate[1:] <= 0.0)).any(axis=0) & ~poor)
+    falls = ((rate[:-1] > 0.0) & (rate[1:] <= 0.0))[:, row].argmax(axis=0)
+    own = (ends[0][row], ends[1][row]), (slopes[0][row], slopes[1][row])
+    part = roots_of_cubics(*own, _SAMPLES[falls], _SAMPLES[falls + 1])
+    middle = np.flatnonzero(poor)
+    return joined_places((row, part), (middle, np.full(len(middle), 0.5)))
+
+
+def roots_of_cubics(ends: _Ends, slopes: _Ends, low: Array, high: Array) -> Array:
+    """Where cubics that are positive at ``low`` pass zero before ``high``."""
+    for _ in range(_HALVINGS):
+        middle = 0.5 * (low + high)
+        ahead = cubic(middle, ends, slopes) > 0.0
+        low, high = np.where(ahead, middle, low), np.where(ahead, high, middle)
+    return high
+
+
+def _towards_dead_points(rows: MotionRows, value: Array, ends: _Ends, smooth: BoolArray) -> Places:
+    """The middle of steps without rates at one end, where the quantity turns before that."""
+    assert rows.joined is not None
+    change = np.diff(value)
+    turns = np.where(np.isfinite(ends[0]), (ends[0] > 0.0) & (change < 0.0),
+                     (ends[1] < 0.0) & (change > 0.0))  # fmt: skip
+    row = np.flatnonzero(rows.joined & ~smooth & turns)
+    return row, np.full(len(row), 0.5)
+
+
+def _next_to_peaks(rows: MotionRows, value: Array) -> Places:
+    """Vertex and eighths of the steps next to rows that are higher than their neighbours."""
+    assert rows.joined is not None
+    before = np.append(False, rows.joined)
+    after = np.append(rows.joined, False)
+    left = np.where(before, np.roll(value, 1), -np.inf)
+    right = np.where(after, np.roll(value, -1), -np.inf)
+    best = np.fmax.reduce(value)
+    inner = before & after
+    bend = np.where(inner, 2.0 * value - left - right, 0.0)
+    peaks = (value >= left) & (value >= right) & (value + bend >= best)
+    peaks &= bend > 16.0 * EPSILON * np.abs(best)
+    found = [NOWHERE]
+    for k in np.flatnonzero(peaks).tolist():
+        found += [(np.full(len(_EIGHTHS), row), _EIGHTHS) for row in (k - 1, k)]
+        found.append(_vertex(rows.input[k - 1 : k + 2], value[k - 1 : k + 2], k))
+    return joined_places(*found, *_next_to_ends(rows, value, best, inner))
+
+
+def _next_to_ends(
+    rows: MotionRows, value: Array, best: float, inner: BoolArray
+) -> Iterator[Places]:
+    """The vertex in the first or last step of rows that are joined, if the parabola has one."""
+    for k in np.flatnonzero(inner & ~(np.roll(inner, 1) & np.roll(inner, -1))).tolist():
+        f, u = value[k - 1 : k + 2], rows.input[k - 1 : k + 2]
+        row, part = _vertex(u, f, k)
+        beside = inner[k + 1] if row[0] == k else inner[k - 1]
+        concave = 2.0 * f[1] > f[0] + f[2] and 0.0 < part[0] < 1.0
+        if concave and not beside and f.max() + np.ptp(f) >= best:
+            yield row, part
+
+
+def _vertex(u: Array, f: Array, row: int) -> Places:
+    """The vertex of the parabola through three rows, of which the middle one is the highest."""
+    a, b = (f[1] - f[0]) / (u[1] - u[0]), (f[2] - f[1]) / (u[2] - u[1])
+    at = 0.5 * (u[0] + u[1]) - 0.5 * a * (u[2] - u[0]) / (b - a)
+    below = (at - u[1]) * (u[2] - u[0]) < 0.0
+    one: IndexArray = np.array([row - 1 if below else row])
+    begin, end = (u[0], u[1]) if below else (u[1], u[2])
+    return one, np.clip(np.array([(at - begin) / (end - begin)]), 0.0, 1.0)

@@ -1,0 +1,113 @@
+"""Rows in addition to those of a motion's table, at which a number of the motion is exact."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from typing import Protocol
+
+import numpy as np
+
+from linkwork.foundation.arrays import Array, BoolArray, IndexArray
+from linkwork.results.quantities.asked import AskedOfMotion, Group
+from linkwork.results.quantities.definition import UNKNOWN, MotionRows, Solved
+
+__all__ = ["Between", "LocatedRows", "columns_of", "locate_rows"]
+
+_MOST_PASSES = 16
+_POLE = 1e3  # times the values of the table: there is a pole, not an extreme
+_AT_ROW = 1e-12  # of the input: places so near to a row are that row
+
+
+class SolvedTable(Solved, Protocol):
+    """Solved positions, some of which may be missing."""
+
+    @property
+    def found(self) -> BoolArray:
+        """Whether a row has a position, (K,)."""
+
+
+class Between(Protocol):
+    """Solves positions between the rows of a motion."""
+
+    @property
+    def joined(self) -> BoolArray:
+        """Between which neighbouring rows positions can be solved, (R - 1,)."""
+
+    def __call__(self, row: IndexArray, at: Array) -> SolvedTable:
+        """Positions at leading inputs (K,) [rad or length] between rows (K,) and the next ones."""
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class LocatedRows:
+    """The rows of a motion with further ones in their places.
+
+    ``further``: the solutions that were added. ``order``: the place of each row among those of the
+    motion followed by all further ones.
+    """
+
+    rows: MotionRows
+    further: Sequence[SolvedTable]
+    order: IndexArray
+
+
+def columns_of(
+    asked: AskedOfMotion, solved: Solved, speed: float | None
+) -> tuple[Array, Array, Array]:
+    """The quantity and its derivatives by the leading input, NaN if it has none, in file units."""
+    of, rate = asked.of, asked.of.rate
+    if asked.quantity.of_point or (rate is None and of.group is not Group.EVIDENCE):
+        return replace(asked, quantity=replace(asked.quantity, needs=2)).columns(solved, speed)
+    value = of.values(solved, speed)
+    if rate is None or rate.order > 1 or of.group is Group.POINT:
+        return value, UNKNOWN, UNKNOWN
+    return value, rate.of(of.jet(solved).d2, UNKNOWN, speed), UNKNOWN
+
+
+def locate_rows(
+    asked: AskedOfMotion, rows: MotionRows, between: Between | None, speed: float | None
+) -> LocatedRows:
+    """The rows with those that make the number exact, as far as positions can be solved there."""
+    order, further = np.arange(len(rows.input)), list[SolvedTable]()
+    places = asked.quantity.places
+    still = asked.of.group in (Group.EVIDENCE, Group.INPUT)
+    if between is None or places is None or still or len(order) < 2:
+        return LocatedRows(rows=rows, further=further, order=order)
+    rows, before, count = replace(rows, joined=between.joined), order, len(order)
+    most = _POLE * np.nanmax(np.abs(rows.value), initial=0.0)
+    for _ in range(_MOST_PASSES):
+        row, part = places(rows, asked.numbers)
+        step = np.abs(rows.input[row + 1] - rows.input[row])
+        size = np.maximum(np.ptp(rows.input), np.abs(rows.input[row]))
+        fresh = np.minimum(part, 1.0 - part) * step > _AT_ROW * size
+        at = np.unique(np.stack([row[fresh], part[fresh]]), axis=1)
+        row, part = at[0].astype(np.intp), at[1]
+        if not len(row):
+            break
+        at = rows.input[row] + part * (rows.input[row + 1] - rows.input[row])
+        more = between(before[row], at)
+        there = np.flatnonzero(more.found)
+        if not len(there):
+            break
+        own = [np.broadcast_to(x, len(at))[there] for x in columns_of(asked, more, speed)]
+        behind = row[there] + 1
+        rows = _inserted(rows, behind, at[there], own)
+        order = np.insert(order, behind, count + there)
+        before = np.insert(before, behind, before[row[there]])
+        further.append(more)
+        count += len(at)
+    if asked.quantity.sides and (np.abs(rows.value) > most).any():
+        beyond = np.where(np.abs(rows.value) > most, np.inf * np.sign(rows.value), rows.value)
+        rows = replace(rows, value=beyond)
+    return LocatedRows(rows=rows, further=further, order=order)
+
+
+def _inserted(rows: MotionRows, behind: IndexArray, at: Array, own: Sequence[Array]) -> MotionRows:
+    value, first, second = (
+        np.insert(column, behind, new)
+        for column, new in zip((rows.value, rows.first, rows.second), own, strict=True)
+    )
+    assert rows.joined is not None
+    joined = np.insert(rows.joined, behind - 1, True)
+    given = np.insert(rows.input, behind, at)
+    return replace(rows, input=given, value=value, first=first, second=second, joined=joined)

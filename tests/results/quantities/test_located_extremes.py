@@ -1,0 +1,176 @@
+"""Numbers of a motion are those of the motion, whatever rows its table has."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+
+import linkwork as lw
+from tests.campaigns.extremes import extreme_campaign
+
+STEPS = (1.0, 5.0, 10.0)
+SLIDER = """
+format = 1
+length = "mm"
+[dimensions]
+a = 63
+b = 130
+c = 52
+[loops]
+L = "a*e^(i*θ2) - b*e^(i*θ3) = d + i*c"
+[guess]
+"θ2" = 55
+"θ3" = 180
+d = 160
+[input]
+variable = "θ2"
+from = 0
+to = 360
+step = {step}
+"""
+BAR = {"O2 A": 40, "A B": 120, "O4 B": 80}
+
+
+def slider(step: float) -> lw.api.Mechanism:
+    return lw.loads(SLIDER.format(step=step))
+
+
+def bar(step: float, **further: object) -> lw.api.Mechanism:
+    return lw.linkage(
+        length="mm",
+        points={"O2": (0, 0), "A": (35, 20), "B": (146, 66), "O4": (100, 0)},
+        links={
+            "ground": ["O2", "O4"],
+            "crank": ["O2", "A"],
+            "coupler": ["A", "B"],
+            "rocker": ["O4", "B"],
+        },
+        lengths=BAR,
+        inputs=lw.Input(link="crank", start=0, stop=360, step=step, speed="10 rad/s"),
+        **further,
+    )
+
+
+@pytest.mark.parametrize("step", STEPS)
+def test_the_stroke_of_an_offset_slider_and_its_sensitivities_are_closed_forms(step: float) -> None:
+    far, near = math.sqrt(193.0**2 - 52.0**2), math.sqrt(67.0**2 - 52.0**2)
+    mechanism = slider(step)
+    found = mechanism.sensitivity("stroke(d)")
+    assert float(found.value) == pytest.approx(far - near, rel=1e-13)
+    expected = {"a": 193.0 / far + 67.0 / near, "b": 193.0 / far - 67.0 / near,
+                "c": -52.0 / far + 52.0 / near}  # fmt: skip
+    # the located input is known to 1e-12
+    assert {name: found[name] for name in "abc"} == pytest.approx(expected, rel=1e-11)
+    at = [math.asin(52.0 / 193.0), math.pi + math.asin(52.0 / 67.0)]
+    part = at[1] - at[0]
+    ratio = max(part, math.tau - part) / min(part, math.tau - part)
+    assert mechanism.sweep().value("time_ratio(d)") == pytest.approx(ratio, rel=1e-11)
+    assert mechanism.family({"c": [50.0, 52.0]}).sweep().value("stroke(d)")[1] == pytest.approx(
+        far - near, rel=1e-11
+    )
+
+
+@pytest.mark.parametrize("step", STEPS)
+def test_the_swing_of_a_rocker_and_its_sensitivities_are_those_of_its_dead_centres(
+    step: float,
+) -> None:
+    def angle(sign: float, a: complex, b: complex, c: complex) -> complex:
+        return complex(math.pi - np.arccos((c**2 + 100.0**2 - (b + sign * a) ** 2) / (200.0 * c)))
+
+    def swing(a: complex, b: complex, c: complex) -> complex:
+        return math.degrees(1.0) * (angle(-1.0, a, b, c) - angle(1.0, a, b, c))
+
+    found = bar(step).sensitivity("stroke(rocker)")
+    assert float(found.value) == pytest.approx(swing(40, 120, 80).real, rel=1e-13)
+    for k, name in enumerate(BAR):
+        numbers: list[complex] = [40.0, 120.0, 80.0]
+        numbers[k] += 1e-30j
+        assert found[name] == pytest.approx(swing(*numbers).imag * 1e30, rel=1e-11)
+    # B moves on a circle, back and forth
+    there_and_back = 2.0 * 80.0 * math.radians(swing(40, 120, 80).real)
+    assert bar(step).sweep().value("path_length(B)") == pytest.approx(there_and_back, rel=1e-11)
+
+
+@pytest.mark.parametrize(
+    "name",
+    [
+        "max(rocker.d1)", "min(rocker.velocity)", "stroke(coupler.acceleration)",
+        "max(crank.effort)", "min(A.force.y)", "min(B.transmission)", "dwell(rocker, 5)",
+        "path_length(P)",
+    ],
+)  # fmt: skip
+def test_a_number_of_a_motion_is_the_same_at_every_step(name: str) -> None:
+    masses = {"coupler": lw.Mass(mass=2.0, center=(60, 5), inertia=100.0)}
+    coarse, fine = (
+        bar(step, masses=masses).sweep()
+        if name != "path_length(P)"
+        else lw.example("hoeken").sweep(step=step)
+        for step in (10.0, 0.25)
+    )
+    # the rows of the fine table miss less than their step squared of an extreme
+    assert coarse.value(name) == pytest.approx(fine.value(name), rel=1e-10)
+
+
+def test_the_higher_of_two_extremes_is_found_though_the_lower_one_is_a_row() -> None:
+    text = SLIDER.format(step=9)
+    wave = '[outputs]\nw = "cos(3*θ2) + 0.001*(1 - cos(θ2)) + 0.0001*sin(θ2)"\n'
+    mechanism = lw.loads(text + wave)
+    dense = np.radians(np.linspace(119.9, 120.1, 200_001))
+    most = (np.cos(3 * dense) + 0.001 * (1 - np.cos(dense)) + 0.0001 * np.sin(dense)).max()
+    assert mechanism.sweep().value("max(w)") == pytest.approx(most, abs=1e-13)
+    assert mechanism.family({"a": [63.0, 64.0]}).sweep().value("max(w)")[0] == pytest.approx(
+        most, abs=1e-12
+    )
+
+
+def test_an_extreme_at_a_dead_point_is_that_of_the_dead_point() -> None:
+    motion = bar(10.0).with_dimensions({"O2 A": 90.0}).sweep()
+    ends = [motion["crank"][motion.found][k] for k in (0, -1)]
+    assert sorted(limit.input for limit in motion.limits) == pytest.approx(sorted(ends))
+    fine = bar(0.5).with_dimensions({"O2 A": 90.0}).sweep()
+    for name in ("max(rocker)", "stroke(coupler)", "path_length(B)"):
+        assert motion.value(name) == pytest.approx(fine.value(name), rel=1e-9)
+
+
+def test_designs_have_their_extremes_as_they_have_them_alone() -> None:
+    four = bar(10.0)
+    lengths = [38.0, 40.0, 90.0]  # the last one has dead points in the table
+    family = four.family({"O2 A": lengths}).sweep()
+    for name in ("max(rocker)", "min(B.transmission)", "stroke(rocker.velocity)"):
+        alone = [bar(0.5).with_dimensions({"O2 A": a}).sweep().value(name) for a in lengths[:2]]
+        assert family.value(name)[:2] == pytest.approx(alone, rel=1e-11)
+
+
+def test_limits_of_rates_and_efforts_are_located() -> None:
+    loaded = bar(10.0, masses={"coupler": lw.Mass(mass=2.0, center=(60, 5), inertia=100.0)})
+    motion = loaded.sweep(limits_of=["rocker.d1", "crank.effort"])
+    found = {(limit.name, limit.kind): limit for limit in motion.output_limits}
+    assert found["rocker.d1", "maximum"].value == pytest.approx(motion.value("max(rocker.d1)"))
+    lowest = found["crank.effort", "minimum"]
+    assert lowest.value == pytest.approx(motion.value("min(crank.effort)"), rel=1e-13)
+    row = motion.limit.index("minimum of crank.effort")
+    assert motion.certified[row] or motion.certified[row + 1]
+    with pytest.raises(lw.InputError, match="measures how a position was found"):
+        loaded.sweep(limits_of="condition")
+
+
+def test_a_pole_is_no_extreme() -> None:
+    motion = bar(10.0).sweep(limits_of="rocker.mechanical_advantage")
+    assert motion.value("max(rocker.mechanical_advantage)") == math.inf
+    assert all(abs(limit.value) < 10.0 for limit in motion.output_limits)
+
+
+def test_a_goal_of_a_stroke_is_met_by_the_stroke_of_the_motion() -> None:
+    best = slider(3.0).improve({"of": "stroke(d)", "target": 150.0}, vary=["a"], starts=1)[0]
+    # polynomials through nine rows three degrees apart
+    a = best.numbers["a"]
+    stroke = math.sqrt((130.0 + a) ** 2 - 52.0**2) - math.sqrt((130.0 - a) ** 2 - 52.0**2)
+    assert stroke == pytest.approx(150.0, rel=1e-10)
+
+
+def test_random_mechanisms_have_the_extremes_of_closed_forms_and_of_finer_tables() -> None:
+    counts, false = extreme_campaign(0, 4)
+    assert false == []
+    assert counts["numbers of designs with two extremes between rows"] == 0
