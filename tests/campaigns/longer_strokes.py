@@ -17,6 +17,7 @@ from tests.campaigns.library_defects import MECHANISMS
 __all__ = ["stroke_campaign"]
 
 _STARTS, _MORE = 4, 1.1
+_STILL = 1e-6  # length units: points that do not move
 _REACHED, _NEARER = 1e-6, 1e-3  # of the stroke that is added
 
 
@@ -26,7 +27,8 @@ def stroke_campaign(part: int) -> tuple[Counter[str], list[str]]:
     mechanism = lw.example(name)
     try:
         motion = mechanism.sweep(certify=False)
-        moving = [p for p in motion.points if np.ptp(motion.trace(p)[motion.found].view(float)) > 0]
+        paths = {name: motion.trace(name)[motion.found] for name in motion.points}
+        moving = [p for p, path in paths.items() if np.abs(path - path[0]).max() > _STILL]
         names = [*mechanism.description.trace[:1], *reversed(moving)][:1]
         if not names:
             return Counter({"no moving point": 1}), []
