@@ -12,6 +12,7 @@ import re
 import tempfile
 import zipfile
 from collections.abc import Callable, Iterator
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -227,13 +228,13 @@ def _files(record: Record, name: str) -> None:
         }
         for suffix, write in writers.items():
             key = suffix.removeprefix(".")
-            found = attempt(record, key, lambda s=suffix, w=write: numbers(s, w))
+            found = attempt(record, key, partial(numbers, suffix, write))
             if found is not None:
                 record.note(f"{key}.numbers.value", found)
         for form in _FOREIGN:
-            written = attempt(record, form, lambda f=form: mechanism.exported(f).text)
+            written = attempt(record, form, partial(mechanism.exported, form))
             if written is not None:
-                record.note(f"{form}.numbers.value", _numbers_of(written))
+                record.note(f"{form}.numbers.value", _numbers_of(written.text))
 
 
 def _text_of(path: Path) -> str:
