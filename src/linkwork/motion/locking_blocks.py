@@ -19,7 +19,7 @@ from linkwork.foundation.rounding import EPSILON
 from linkwork.kernels.table_splitter import TableSplitter
 from linkwork.motion.drive import Drive
 from linkwork.numerics.continuation.branch_tracking import InputPath, Node
-from linkwork.numerics.continuation.change_point import singular_blocks
+from linkwork.numerics.continuation.change_point import crossing_near, singular_blocks
 from linkwork.numerics.continuation.turning_point import turn_beyond
 from linkwork.numerics.joined_blocks import closure_of
 
@@ -51,7 +51,15 @@ def locks_ahead(drive: Drive, nodes: Sequence[Node], side: float) -> Lock | None
     blocks = singular_blocks(drive.solver, nodes[-1].v)
     if len(blocks) < 2:
         return None
-    found = [lock for block in blocks if (lock := _lock(drive, nodes, block, side)) is not None]
+    # next to a change point, in its own loops or in those that drive it, rounding makes a dead
+    # point of a crossing
+    locking = [
+        block
+        for block in blocks
+        if set(closure_of(drive.solver, block)).isdisjoint({*blocks} - {block})
+        and crossing_near(drive.solver, drive.path, block, nodes[-1].v) is None
+    ]
+    found = [lock for block in locking if (lock := _lock(drive, nodes, block, side)) is not None]
     found.sort(key=lambda lock: side * lock.t)
     if not found:
         return None

@@ -9,8 +9,8 @@ from linkwork.foundation.certification import Certification
 from linkwork.foundation.status import Status
 from linkwork.motion.model import Model
 from linkwork.motion.named_quantities import name_series
-from linkwork.motion.proving import roots_proved
 from linkwork.motion.redundancy import FITS, has_corners, largest_misfits, misfit
+from linkwork.numerics.proof.position_proof import roots_proved
 from linkwork.numerics.rows import SolvedRows
 from linkwork.results.motion import Limit, Motion
 

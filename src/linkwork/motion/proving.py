@@ -6,17 +6,17 @@ from collections.abc import Callable, Sequence
 
 import numpy as np
 
-from linkwork.foundation.arrays import Array, BoolArray, IndexArray
+from linkwork.foundation.arrays import Array, IndexArray
 from linkwork.foundation.certification import Certification
 from linkwork.foundation.rounding import UNIT_ROUNDOFF
 from linkwork.foundation.status import Status
 from linkwork.numerics.block_solver import BlockSolver
 from linkwork.numerics.continuation.branch_tracking import InputPath, Node, Track, rows_of_nodes
 from linkwork.numerics.continuation.path_proof import prove_path
-from linkwork.numerics.proof.position_proof import prove, rounding_of_inputs
+from linkwork.numerics.proof.position_proof import rounding_of_inputs
 from linkwork.numerics.rows import SolvedRows
 
-__all__ = ["inputs_apart", "prove_rows", "roots_proved", "unproved", "way_is_proved"]
+__all__ = ["inputs_apart", "prove_rows", "unproved", "way_is_proved"]
 
 _FAR_FROM_SINGULAR = 1e5  # condition up to which a track's nodes must be proved
 _TURN = 1e-9  # rad: an input this near to whole turns from the input asked for is the same one
@@ -68,17 +68,6 @@ def prove_rows(
         uniqueness_radius=np.where(position, proof.position.least_uniqueness_radius[mine], np.nan),
     )
     return proved, bool(joined[place[: len(nodes)]].all())
-
-
-def roots_proved(solver: BlockSolver, v: Array) -> BoolArray:
-    """Whether a small residual is evidence of a solution next to positions v (B, N), (B,).
-
-    Where the equations are loops a dead point is one, too; a formula may be small without a root,
-    so that its root has to be proved.
-    """
-    if not solver.has_formulas:
-        return np.ones(len(v), dtype=bool)
-    return prove(solver, v, rounding_of_inputs(v, solver.unknowns)).holds
 
 
 def unproved(rows: SolvedRows, why: Certification) -> SolvedRows:

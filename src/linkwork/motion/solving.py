@@ -23,11 +23,10 @@ from linkwork.motion.positions import (
     position_of,
     target_values,
 )
-from linkwork.motion.proving import roots_proved
 from linkwork.motion.redundancy import FITS, lengths_found, misfit, without_redundant
 from linkwork.motion.start import Start, first_position
 from linkwork.numerics.newton import NewtonOptions
-from linkwork.numerics.proof.position_proof import prove, rounding_of_inputs
+from linkwork.numerics.proof.position_proof import prove, roots_proved, rounding_of_inputs
 from linkwork.numerics.rows import SolvedRows
 from linkwork.results.failure import Failure, Remedy
 from linkwork.results.position import Certificate, Position

@@ -10,8 +10,8 @@ from linkwork.foundation.arrays import Array
 from linkwork.foundation.status import Status
 from linkwork.motion import failure as why
 from linkwork.motion.model import Model
-from linkwork.motion.proving import roots_proved
 from linkwork.numerics.newton import NewtonOptions, Watch
+from linkwork.numerics.proof.position_proof import roots_proved
 from linkwork.results.failure import Failure
 from linkwork.results.position import NewtonStep, NewtonTrail
 from linkwork.results.quantity import Kind

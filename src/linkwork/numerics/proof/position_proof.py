@@ -41,6 +41,7 @@ __all__ = [
     "prove",
     "prove_block",
     "reach",
+    "roots_proved",
     "rounding_of_inputs",
     "steps_connected",
     "steps_disproved",
@@ -165,6 +166,17 @@ def prove(
         uniqueness_radius=uniqueness_radius,
         error_bound=error_bound,
     )
+
+
+def roots_proved(solver: BlockSolver, v: Array) -> BoolArray:
+    """Whether a small residual is evidence of a solution next to positions v (B, N), (B,).
+
+    Where the equations are loops a dead point is one, too; a formula may be small without a root,
+    so that its root has to be proved.
+    """
+    if not solver.has_formulas:
+        return np.ones(len(v), dtype=bool)
+    return prove(solver, v, rounding_of_inputs(v, solver.unknowns)).holds
 
 
 def _prove_singly(solver: BlockSolver, rows: Sequence[PlacesOfRow], radius: Array) -> Proof:
