@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 import math
+from functools import partial
 from typing import Any
 
 import numpy as np
 import pytest
 
 import linkwork as lw
-from linkwork.dynamics import panels
+from linkwork.dynamics import panels, reduced_leg
 from linkwork.forces import forces_of_motion
 
 BLOCK: dict[str, Any] = {
@@ -297,7 +298,8 @@ def test_an_energy_that_drifts_is_said_and_not_certified(monkeypatch: pytest.Mon
     fine = mechanism.simulate(until=1, step=0.05)
     assert fine.certified.all()
     assert "drifts" not in fine.message
-    monkeypatch.setattr(panels, "_DEEPEST", 0)
+    coarsely = partial(panels.fit_panels, deepest=0)
+    monkeypatch.setattr(reduced_leg, "fit_panels", coarsely)
     coarse = mechanism.simulate(until=1, step=0.05)
     assert "its energy drifts by" in coarse.message
     assert "not certified" in coarse.message
