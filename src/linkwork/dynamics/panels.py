@@ -75,7 +75,7 @@ def fit_panels(
     edges: Sequence[float] | Array,
     groups: IndexArray,
     least: Array,
-    deepest: int = _DEEPEST,
+    deepest: int | None = None,
 ) -> Panels:
     """Fit functions, (B,) → (B, K), between rising edges, and on halves of these panels where
     needed.
@@ -88,6 +88,7 @@ def fit_panels(
     waiting = [(float(a), float(b)) for a, b in pairwise(edges)]
     before = np.full((len(waiting), len(groups)), np.inf)
     size = least
+    deepest = _DEEPEST if deepest is None else deepest
     for depth in range(deepest + 1):
         places = np.concatenate(
             [0.5 * (a + b) + 0.5 * (b - a) * x for a, b in waiting] or [np.zeros(0)]
