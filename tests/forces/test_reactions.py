@@ -433,8 +433,12 @@ def test_both_sides_of_a_switch_are_known_between_rows() -> None:
     )
     found = rotor.forces()
     assert np.max(found["crank.effort"]) == pytest.approx(100.0)
+    swept = rotor.sweep()
+    for number, value in (("max", 20100.0), ("min", 100.0), ("stroke", 20000.0)):
+        assert swept.value(f"{number}(crank.effort)") == pytest.approx(value, rel=1e-12)
     beside = found.at_switches
-    assert beside["crank"] == pytest.approx([100.1, 100.1, 100.9, 100.9], rel=1e-12)
+    # rows a few 1e-12 of the table beside the switches
+    assert beside["crank"] == pytest.approx([100.1, 100.1, 100.9, 100.9], abs=360 * 3e-12)
     assert beside["crank.effort"] == pytest.approx([100.0, 20100.0, 20100.0, 100.0])
     smooth = rotor.changed(loads=[lw.Load(link="crank", torque="-5")]).forces()
     assert not len(smooth.at_switches["crank"])

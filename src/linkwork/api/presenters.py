@@ -20,6 +20,7 @@ __all__ = ["register_presenters"]
 def register_presenters() -> None:
     """Register the function behind every display method; it is loaded at its first call."""
     register_presenter(Model.force_quantities, lambda: forces.force_quantities)
+    register_presenter(Model.beside_switches, lambda: forces.beside_switches)
     register_presenter(Model.derivatives, lambda: motion.derivatives_of)
     register_presenter(Motion.__repr__, lambda: motion_text)
     register_presenter(Motion.table, lambda: table_of)

@@ -13,5 +13,6 @@ if TYPE_CHECKING:
         forces_of_position as forces_of_position,
     )
     from linkwork.forces.stalling import locate_stalls as locate_stalls
+    from linkwork.forces.switch_places import beside_switches as beside_switches
 else:
     __getattr__ = loader(__name__)

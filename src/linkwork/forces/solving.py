@@ -11,7 +11,7 @@ import numpy as np
 from linkwork.equations.input_motion import TIME
 from linkwork.forces.applied import load_formulas
 from linkwork.forces.quantities import check_formulas
-from linkwork.forces.switch_places import switch_places
+from linkwork.forces.switch_places import beside_switches
 from linkwork.forces.system import solve_forces
 from linkwork.foundation.arrays import Array
 from linkwork.foundation.errors import InputError, KeyWords, key_text
@@ -25,8 +25,6 @@ from linkwork.results.motion import Motion
 from linkwork.results.position import Position
 from linkwork.results.quantities.definition import Solved
 from linkwork.results.reactions import ForceStatus, Reactions
-
-_BESIDE = 1e-13  # of the table: a row just beside a switch, that rounding does not bring behind it
 
 __all__ = ["forces_of_motion", "forces_of_position"]
 
@@ -69,10 +67,8 @@ class _SwitchValues:
         lead = list(self.motion.inputs).index(self.model.motion_quantities.names.lead)
         t = np.asarray(list(self.motion.inputs.values())[lead]) * self.model.input_scale[lead]
         at = between_rows(self.model, self.motion)
-        before, behind = switch_places(self.model, at, np.sort(t))
-        away = _BESIDE * float(np.ptp(t))
-        places = np.clip(np.concatenate([before - away, behind + away]), t.min(), t.max())
-        return at(np.sort(places)) if len(places) else None
+        places = beside_switches(self.model, at, np.sort(t))
+        return at(places) if len(places) else None
 
     def of(self, name: str) -> Array:
         """A quantity, (2K,)."""

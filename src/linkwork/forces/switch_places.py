@@ -17,12 +17,20 @@ from linkwork.mechanism.loaded import LoadedBodies
 from linkwork.motion.model import Model
 from linkwork.results.quantities.definition import Solved
 
-__all__ = ["switch_places"]
+__all__ = ["beside_switches", "switch_places"]
 
 _LOOKS = 4  # places of a step of the table where switches are looked for
 _DIP = 2.0  # times the differences to its neighbours: a smaller least value may hide two zeros
 _CUTS, _ROUNDS = 16, 16  # of a bracket at once, and how often: to rounding
+_BESIDE = 2e-12  # of the table: a row there is no row of the table, and rounding keeps it there
 _SAME_LENGTH = 1e-9  # of the longest link: a spring whose length varies less has no shortest one
+
+
+def beside_switches(model: Model, at: Callable[[Array], Solved], t: Array) -> Array:
+    """Places just before and just behind all switches, rising, (2K,); see :func:`switch_places`."""
+    before, behind = switch_places(model, at, t)
+    away = _BESIDE * max(float(np.ptp(t)), float(np.abs(t).max()))
+    return np.sort(np.clip(np.concatenate([before - away, behind + away]), t[0], t[-1]))
 
 
 def switch_places(model: Model, at: Callable[[Array], Solved], t: Array) -> tuple[Array, Array]:

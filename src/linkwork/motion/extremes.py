@@ -182,6 +182,11 @@ class _OnTrack:
         """All of them."""
         return np.ones(2, dtype=bool)
 
+    @property
+    def switches(self) -> Array:
+        """None: limits are those of quantities of positions alone."""
+        return np.zeros(0)
+
     def __call__(self, row: IndexArray, at: Array) -> _TrackRows:
         """At the values t (B,)."""
         rows = rows_on_track(self.drive.solver, self.drive.path, self.track, at)

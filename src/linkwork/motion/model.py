@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, replace
 from functools import cached_property
 
@@ -122,6 +122,14 @@ class Model:
         if not getattr(self.description, "loaded", False):
             return ()
         return presenter(Model.force_quantities)(self)
+
+    def beside_switches(self, at: Callable[[Array], Solved], t: Array) -> Array:
+        """Places just before and just behind all switches of loads between rising values t (B,) of
+        the leading input, at which ``at`` gives positions; none without loads.
+        """
+        if not getattr(self.description, "loaded", False):
+            return np.zeros(0)
+        return presenter(Model.beside_switches)(self, at, t)
 
     def derivatives(self, solved: Solved, asked: Asked, order: int) -> Array:
         """The derivatives of a quantity with respect to the leading input, from the first to one of

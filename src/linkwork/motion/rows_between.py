@@ -70,6 +70,21 @@ class RowsBetween:
         joined: BoolArray = one & found[1:] & found[:-1] & (regular[1:] | regular[:-1])
         return joined
 
+    @cached_property
+    def switches(self) -> Array:
+        """Where rows just beside switches of loads would be, as rows name them, rising, (K,)."""
+        t = self._places[1]
+        if not self.joined.all() or len(t) < 2:
+            return np.zeros(0)
+        order = np.argsort(t, kind="stable")
+        rising = t[order]
+
+        def at(places: Array) -> Motion:
+            k = np.clip(rising.searchsorted(places, side="right") - 1, 0, len(t) - 2)
+            return self(np.minimum(order[k], order[k + 1]), places)
+
+        return self.model.beside_switches(at, rising)
+
     def __call__(self, row: IndexArray, at: Array) -> Motion:
         """Positions at leading inputs (K,) between rows (K,) and the next ones.
 

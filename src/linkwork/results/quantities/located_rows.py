@@ -10,7 +10,7 @@ import numpy as np
 
 from linkwork.foundation.arrays import Array, BoolArray, IndexArray
 from linkwork.results.quantities.asked import AskedOfMotion, Group
-from linkwork.results.quantities.definition import UNKNOWN, MotionRows, Solved
+from linkwork.results.quantities.definition import UNKNOWN, MotionRows, Places, Solved
 
 __all__ = ["Between", "LocatedRows", "columns_of", "locate_rows"]
 
@@ -33,6 +33,10 @@ class Between(Protocol):
     @property
     def joined(self) -> BoolArray:
         """Between which neighbouring rows positions can be solved, (R - 1,)."""
+
+    @property
+    def switches(self) -> Array:
+        """Leading inputs just before and just behind the switches of loads, rising, (K,)."""
 
     def __call__(self, row: IndexArray, at: Array) -> SolvedTable:
         """Positions at leading inputs (K,) [rad or length] between rows (K,) and the next ones."""
@@ -75,8 +79,11 @@ def locate_rows(
         return LocatedRows(rows=rows, further=further, order=order)
     rows, before, count = replace(rows, joined=between.joined), order, len(order)
     most = _POLE * np.nanmax(np.abs(rows.value), initial=0.0)
-    for _ in range(_MOST_PASSES):
-        row, part = places(rows, asked.numbers)
+    forced = any(each.word == asked.of.own.name for each in asked.names.further)
+    row, part = _places_of(rows, between.switches) if forced else places(rows, asked.numbers)
+    for k in range(_MOST_PASSES):
+        if k or not len(row):
+            row, part = places(rows, asked.numbers)
         step = np.abs(rows.input[row + 1] - rows.input[row])
         size = np.maximum(np.ptp(rows.input), np.abs(rows.input[row]))
         fresh = np.minimum(part, 1.0 - part) * step > _AT_ROW * size
@@ -95,11 +102,21 @@ def locate_rows(
         order = np.insert(order, behind, count + there)
         before = np.insert(before, behind, before[row[there]])
         further.append(more)
+        if forced and not k:  # a pulse between rows is no pole
+            most = max(most, _POLE * float(np.nanmax(np.abs(own[0]))))
         count += len(at)
     if asked.quantity.sides and (np.abs(rows.value) > most).any():
         beyond = np.where(np.abs(rows.value) > most, np.inf * np.sign(rows.value), rows.value)
         rows = replace(rows, value=beyond)
     return LocatedRows(rows=rows, further=further, order=order)
+
+
+def _places_of(rows: MotionRows, at: Array) -> Places:
+    """Between which rows leading inputs (K,) lie, and the part of the step there."""
+    order = np.argsort(rows.input, kind="stable")
+    k = np.clip(rows.input[order].searchsorted(at, side="right") - 1, 0, len(order) - 2)
+    row = np.minimum(order[k], order[k + 1])
+    return row, (at - rows.input[row]) / (rows.input[row + 1] - rows.input[row])
 
 
 def _inserted(rows: MotionRows, behind: IndexArray, at: Array, own: Sequence[Array]) -> MotionRows:
