@@ -80,9 +80,9 @@ def test_what_moves_is_shown_where_nothing_else_is(
     monkeypatch.chdir(tmp_path)
     shown = _run(BAR, "sweep").split("range", 1)[1].split("For the table")[0]
     assert shown == (
-        "  minimum  at  maximum  at  unit\n"
-        "  A.x    0.00000  90  5.00000   0  mm\n"
-        "  A.y    0.00000   0  5.00000  90  mm\n\n"
+        " of rows  minimum  at  maximum  at  unit\n"
+        "  A.x            0.00000  90  5.00000   0  mm\n"
+        "  A.y            0.00000   0  5.00000  90  mm\n\n"
     )
     assert _run(BAR, "equations").endswith(
         "unknowns  none: all positions follow from the inputs\n"

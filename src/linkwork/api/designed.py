@@ -171,7 +171,7 @@ class DesignedMechanism(DynamicMechanism):
         >>> goals = [{"of": "stroke(d)", "target": 70}, {"of": "max(d)", "target": 60}]
         >>> front = crank.improve(goals, vary=["O2 A"], front=2, starts=1)
         >>> [round(design.goals["stroke(d)"], 4) for design in front]
-        [0.0, 49.7146]
+        [0.0, 49.7142]
         """
         wanted = (goal,) if isinstance(goal, Mapping) else tuple(goal)
         for one in wanted:

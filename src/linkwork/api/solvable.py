@@ -346,7 +346,7 @@ class SolvableMechanism(DescribedMechanism):
         >>> import linkwork as lw
         >>> family = lw.example("four-bar").family({"O2 A": [38, 40, 42]})
         >>> family.reduced(["stroke(rocker)"])["stroke(rocker)"].round(3)
-        array([69.571, 73.781, 78.116])
+        array([69.572, 73.782, 78.117])
         """
         return batch.family_of(self.model, dimensions)
 

@@ -58,6 +58,7 @@ _NEAR = 1 << 16  # positions whose rates are computed at a time: temporaries fit
     "leading",
     "threads",
     "unit",
+    "number",
 )
 @dataclass(frozen=True, kw_only=True, eq=False, repr=False)
 class FamilyMotion:

@@ -220,7 +220,7 @@ class ImprovedMechanism(SweptDesign):
             yield DefectKind.NOT_PROVED, f"{unproved} of {len(motion)} rows are not proved"
         if self.improved.near_dead:
             yield DefectKind.RANGE, self.improved.near_dead
-        if self.improved.unmoved:
+        if self.improved.unmoved and not lost:
             yield DefectKind.UNMOVED, self.improved.unmoved
         yield from self._out_of_range(motion)
         misses = np.array(self.improved.misses)

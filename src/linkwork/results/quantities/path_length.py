@@ -65,7 +65,8 @@ def _gauss(points: int = _POINTS) -> Any:
 
 
 def _parts(rows: MotionRows) -> tuple[Array, Array]:
-    """The lengths of steps, eq. (62), and how far those by a point less and the cubic of F' are."""
+    """The lengths of steps, and how far those by a point less and the cubic of F' are."""
+    # eq. (62), by Gauss points in each step
     ends = _ends(rows)
     total, other = np.zeros(ends[0].shape), np.zeros(ends[0].shape)
     for s, weight in _gauss():
@@ -76,7 +77,7 @@ def _parts(rows: MotionRows) -> tuple[Array, Array]:
 
 
 def _slopes(rows: MotionRows, _: tuple[float, ...]) -> RowSlopes:
-    """Derivatives of eq. (62), row by row."""
+    """Derivatives of the length, row by row."""
     step, ends = np.diff(rows.input), _ends(rows)
     value, first, second = (np.zeros(len(rows.value), dtype=complex) for _ in range(3))
     smooth = np.isfinite(sum(ends))

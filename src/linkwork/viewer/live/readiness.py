@@ -114,6 +114,8 @@ def _thing(problem: Problem, draft: Draft) -> tuple[str, str]:
 
 def _remedies(problem: Problem, draft: Draft, kind: str, name: str) -> Iterator[Remedy]:
     carriers = draft.carriers()
+    if kind == "point" and name in _free_ends(draft):  # of a cylinder
+        yield Remedy(label=f"Fix {name}", edits=(ask.SetGround(points=(name,)),))
     if kind == "point" and not carriers.get(name):
         yield Remedy(label=f"Remove {name}", edits=(ask.RemovePoint(name=name),))
     if kind == "link" and len(draft.links.get(name, ())) < 2:
