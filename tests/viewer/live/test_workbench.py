@@ -87,7 +87,7 @@ def test_a_dimension_changes_in_its_line_and_the_comment_stays(bench: Workbench)
     assert state.unsaved
     longer = lw.loads(FOUR_BAR).with_dimensions(a=42).sweep()
     found = only(events, tell.MotionFound)
-    assert told(found, "rocker") == pytest.approx(longer["rocker"], abs=0)
+    assert told(found, "rocker") == pytest.approx(longer["rocker"], rel=1e-12)
 
 
 def test_a_measured_length_becomes_a_given_one(bench: Workbench) -> None:
