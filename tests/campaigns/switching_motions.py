@@ -334,7 +334,12 @@ def integrate(case: Case, speed: float, times: Array) -> Path:
             bends = abs(drive(t, q, v, held))
             slow = rate < _GRAZES * fastest and not (abs(v) < 1e-9 and bends > _GRAZES)
             path.grazes |= slow
-            held[which] = -held[which]
+            # loads of the rate switch together
+            turned = ".velocity" in case.loads[which].formula
+            held = [
+                -sign if k == which or (turned and ".velocity" in load.formula) else sign
+                for k, (load, sign) in enumerate(zip(case.loads, held, strict=True))
+            ]
             continue
         assert case.stop is not None
         side, value, bounce = case.stop
