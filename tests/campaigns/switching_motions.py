@@ -345,9 +345,9 @@ def integrate(case: Case, speed: float, times: Array) -> Path:
         side, value, bounce = case.stop
         path.grazes |= abs(v) < _GRAZES * fastest
         q, v = value, -bounce * v
-        along = math.copysign(1.0, case.geometry(q)[3] * v)
+        along = math.copysign(1.0, case.geometry(q)[3] * (v or side))
         held = [
-            along if ".velocity" in load.formula and v else sign
+            along if ".velocity" in load.formula else sign
             for load, sign in zip(case.loads, held, strict=True)
         ]
         pull = side * drive(t, q, 0.0, held)
@@ -386,7 +386,7 @@ def _wait(
     for x in times[(times >= at) & (times <= end)]:
         path.t.append(float(x))
         path.q.append(q)
-    return end, at, signs(end, q, 0.0)
+    return end, at, signs(end, q, 1e-12 * side)
 
 
 def switching_campaign(part: int, count: int) -> tuple[Counter[str], list[str]]:
