@@ -334,15 +334,20 @@ def integrate(case: Case, speed: float, times: Array) -> Path:
             bends = abs(drive(t, q, v, held))
             slow = rate < _GRAZES * fastest and not (abs(v) < 1e-9 and bends > _GRAZES)
             path.grazes |= slow
-            held[which] = -held[which]
+            # loads of the rate switch together
+            turned = ".velocity" in case.loads[which].formula
+            held = [
+                -sign if k == which or (turned and ".velocity" in load.formula) else sign
+                for k, (load, sign) in enumerate(zip(case.loads, held, strict=True))
+            ]
             continue
         assert case.stop is not None
         side, value, bounce = case.stop
         path.grazes |= abs(v) < _GRAZES * fastest
         q, v = value, -bounce * v
-        along = math.copysign(1.0, case.geometry(q)[3] * v)
+        along = math.copysign(1.0, case.geometry(q)[3] * (v or side))
         held = [
-            along if ".velocity" in load.formula and v else sign
+            along if ".velocity" in load.formula else sign
             for load, sign in zip(case.loads, held, strict=True)
         ]
         pull = side * drive(t, q, 0.0, held)
@@ -381,7 +386,7 @@ def _wait(
     for x in times[(times >= at) & (times <= end)]:
         path.t.append(float(x))
         path.q.append(q)
-    return end, at, signs(end, q, 0.0)
+    return end, at, signs(end, q, 1e-12 * side)
 
 
 def switching_campaign(part: int, count: int) -> tuple[Counter[str], list[str]]:
