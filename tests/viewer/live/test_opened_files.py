@@ -144,7 +144,7 @@ def test_files_are_dropped_on_the_page(
     page.get_by_text("photo.png is not opened").wait_for()
     assert page.locator(".lw-file").inner_text() == "four-bar.toml"
     drop("arm.urdf", URDF)
-    page.get_by_text("Imported arm.urdf (URDF): 4 points, 3 links, 2 inputs.").wait_for()
+    page.get_by_text("Imported arm.urdf (URDF): 5 points, 3 links, 2 inputs.").wait_for()
     assert page.locator(".lw-message li").count() == 3
     # on the start page the reason is where it can be seen
     page.get_by_role("button", name="New", exact=False).first.click()
