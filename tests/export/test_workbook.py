@@ -258,6 +258,7 @@ def test_a_side_across_an_angle_has_a_formula(tmp_path: Path) -> None:
     assert mechanism.to_excel(tmp_path / "again.xlsx", motion) == ()
 
 
+@pytest.mark.xfail(reason="shapes nearest to a sketch have no formulas yet", strict=True)
 def test_a_shape_without_a_formula_keeps_its_numbers(tmp_path: Path) -> None:
     """No point of the coupler but A and B can be placed before another one."""
     text = lw.example_text("four-bar").replace('"A", "B"]', '"A", "B", "C", "D"]')
