@@ -89,7 +89,7 @@ def test_a_standstill_is_refused_with_its_reason() -> None:
     assert found.defects == {lw.DefectKind.UNMOVED: 1}
     (defect,) = found.designs[0].defects
     assert "the mechanism as it was is no farther from its goals" in defect.message
-    assert "which miss stroke(rocker) by 13.78" in defect.message
+    assert "it misses stroke(rocker) by 13.78" in defect.message
     assert found.to_dict()["defects"] == {"unmoved": 1}
     # a mechanism that meets its goals is one
     bar = lw.example("four-bar")

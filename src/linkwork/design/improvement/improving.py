@@ -283,7 +283,7 @@ class _Search:
         else:
             told += "no small change of those that vary brings its goals nearer"
         if design.goals:
-            told += f", which miss {', '.join(f'{n} by {m:.4g}' for n, m in design.goals.items())}"
+            told += f"; it misses {', '.join(f'{n} by {m:.4g}' for n, m in design.goals.items())}"
         return replace(design, sound=False, unmoved=told, message=f"{design.message}; {told}")
 
     def tell_proofs(self, fraction: float) -> None:
