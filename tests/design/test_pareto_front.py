@@ -22,6 +22,11 @@ def _values(front: tuple[lw.ImprovedDesign, ...]) -> Array:
     return np.array([list(design.goals.values()) for design in front])
 
 
+def _ends(a: Array, rod: Array | float) -> tuple[Array, Array]:
+    """The least and the largest d, where crank and rod are in line."""
+    return np.sqrt((rod - a) ** 2 - 20.0**2), np.sqrt((rod + a) ** 2 - 20.0**2)
+
+
 def _dominated(values: Array) -> list[int]:
     return [
         k
@@ -43,9 +48,8 @@ def test_a_front_of_two_lengths_is_that_of_the_closed_form() -> None:
     a = np.array([design.numbers["O2 A"] for design in front])
     # fits of several rounds end within a millionth of the spans of the goals
     assert [design.numbers["B A"] for design in front] == pytest.approx([80.0] * 5, abs=1e-4)
-    t = np.radians(np.arange(0.0, 361.0, 30.0))[:, None]
-    d = a * np.cos(t) + np.sqrt(80**2 - (a * np.sin(t) + 20) ** 2)
-    expected = np.stack([70 - np.ptp(d, axis=0), d.max(axis=0) - 60], axis=1)
+    least, most = _ends(a, 80.0)
+    expected = np.stack([70 - (most - least), most - 60], axis=1)
     assert values == pytest.approx(expected, abs=1e-4)
     assert values[0, 0] == pytest.approx(0.0, abs=1e-5)
     assert a[-1] == pytest.approx(10.0, abs=1e-6)
@@ -97,9 +101,8 @@ def test_a_front_that_lies_on_a_bound_and_is_ended_by_one_is_found_whole(
     values = _values(front)
     a, rod = (x.ravel() for x in np.meshgrid(np.linspace(ends[0], largest, 200),
                                              np.linspace(*bounds["B A"], 200)))  # fmt: skip
-    t = np.radians(np.arange(0.0, 361.0, 30.0))[:, None]
-    d = a * np.cos(t) + np.sqrt(rod**2 - (a * np.sin(t) + 20) ** 2)
-    dense = np.abs(np.stack([d.max(axis=0) - 115.113, d.min(axis=0) - 51.527], axis=1))
+    least, most = _ends(a, rod)
+    dense = np.abs(np.stack([most - 115.113, least - 51.527], axis=1))
     order = np.lexsort(dense.T[::-1])
     lowest = np.minimum.accumulate(np.append(np.inf, dense[order, 1]))[:-1]
     dense = dense[order][dense[order, 1] < lowest]
