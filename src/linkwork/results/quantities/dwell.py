@@ -55,11 +55,14 @@ class _Place:
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class _End:
-    """An end of a range, the extreme a band away from it, and whether the end follows from it."""
+    """An end of a range, the extreme a band away from it, and whether the end follows from it:
+    between rows it moves, at a row it touches.
+    """
 
     at: _Place
     extreme: _Place
     moves: BoolArray
+    touches: BoolArray
 
 
 @dataclass(frozen=True, eq=False)
@@ -214,7 +217,7 @@ def _range_slopes(rows: MotionRows, band: float, factors: tuple[float, float]) -
         return RowSlopes(value=value)
     curve = _Curve(up)
     for own, factor in zip(_ends(curve, band), factors, strict=True):
-        if not own.moves[0] or factor == 0.0:
+        if not (own.moves[0] or own.touches[0]) or factor == 0.0:
             continue  # the table ends there
         row = int(curve.piece(own.at)[0][0])
         rate = float(curve.slope(own.at)[0]) / (up.input[row + 1] - up.input[row])
@@ -317,7 +320,7 @@ def _ends(curve: _Curve, band: float) -> tuple[_End, _End]:
         # a neighbour just at the level, or none at all, is the end itself
         touches = known & (level == there) & (here != there)
         at = at.or_else(moves, _Place(number=np.where(touches, beside, last_within)))
-        found.append(_End(at=at, extreme=bottom.or_else(rises, top), moves=moves))
+        found.append(_End(at=at, extreme=bottom.or_else(rises, top), moves=moves, touches=touches))
         # a range that rises or falls all along is measured from this end
         passed: Array = np.where(moves, level, here)
         extremes[1.0] = top.or_else(np.asarray(high >= passed), at), np.fmax(high, passed)
