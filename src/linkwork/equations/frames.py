@@ -273,7 +273,11 @@ class _Orientation:
         on may be drawn anywhere. Wheels of one point only count without other links.
         """
         carriers = self.linkage.carriers()
-        for name, members in self._groups(angles).items():
+        groups: dict[str, list[str]] = {}
+        for body, angle in angles.items():
+            if angle.variable is not None:
+                groups.setdefault(angle.variable, []).append(body)
+        for name, members in groups.items():
             joints: dict[int, list[str]] = {}
             for body in members if len(members) > 1 else ():
                 points = self.linkage.links[body]
@@ -284,14 +288,6 @@ class _Orientation:
                 yield name, [(name, 0.0)]
             else:
                 yield name, [(body, angles[body].constant) for body in drawn]
-
-    def _groups(self, angles: Mapping[str, LinkAngle]) -> dict[str, list[str]]:
-        """The links of every variable."""
-        found: dict[str, list[str]] = {}
-        for body, angle in angles.items():
-            if angle.variable is not None:
-                found.setdefault(angle.variable, []).append(body)
-        return found
 
     def angle_of(self, body: str) -> LinkAngle:
         """The body's angle: its group's variable plus a constant; zero for ground."""
