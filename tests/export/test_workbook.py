@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import sys
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -20,6 +21,8 @@ from linkwork.expression.grammar import parse
 from linkwork.expression.values import value
 from linkwork.foundation.angles import AngleUnit
 from linkwork.foundation.errors import InputError, MissingPackageError
+from linkwork.mechanism.linkage import Linkage
+from tests.described import described_as
 from tests.export.coarse import coarse
 from tests.oracles.spreadsheet import Spreadsheet, calculated
 from tests.thinned import thinned
@@ -258,19 +261,48 @@ def test_a_side_across_an_angle_has_a_formula(tmp_path: Path) -> None:
     assert mechanism.to_excel(tmp_path / "again.xlsx", motion) == ()
 
 
-@pytest.mark.xfail(reason="shapes nearest to a sketch have no formulas yet", strict=True)
-def test_a_shape_without_a_formula_keeps_its_numbers(tmp_path: Path) -> None:
-    """No point of the coupler but A and B can be placed before another one."""
-    text = lw.example_text("four-bar").replace('"A", "B"]', '"A", "B", "C", "D"]')
-    text = text.replace("[lengths]", '[lengths]\n"A C" = 50\n"B D" = 50\n"C D" = 100')
-    text = text.replace("[links]", "C = [50, 70]\nD = [140, 110]\n\n[links]")
-    mechanism = lw.loads(f'{text}\n[angles]\n"A C D" = 100\n')
+def _with_four_points(lengths: dict[str, float], angles: dict[str, float]) -> lw.Mechanism:
+    """A four-bar whose coupler carries C and D."""
+    bar = described_as(Linkage, lw.example("four-bar"))
+    return lw.Mechanism(
+        replace(
+            bar,
+            points={**bar.points, "C": (50, 70), "D": (140, 110)},
+            links={**bar.links, "coupler": ("A", "B", "C", "D")},
+            lengths={**bar.lengths, **lengths},
+            angles=angles,
+        )
+    )
+
+
+def test_a_shape_that_can_be_placed_from_some_length_has_formulas(tmp_path: Path) -> None:
+    """From A and B no other point can be placed, from A and C all can."""
+    mechanism = _with_four_points({"A C": 50, "B D": 50, "C D": 100}, {"A C D": 100})
+    motion = mechanism.sweep(step=30, certify=False)
+    check_rows(written(tmp_path, mechanism, motion), motion)
+    assert mechanism.to_excel(tmp_path / "again.xlsx", motion) == ()
+
+
+@pytest.mark.parametrize(
+    ("lengths", "angles"),
+    [
+        # no length leads to a point by an angle and a length, or by two lengths
+        ({"C D": 98}, {"B A C": 50, "A B D": -105, "A C D": 131}),
+        # nearest to the sketch: two dimensions are missing, four distances are open
+        ({"A C": 50, "C D": 98}, {}),
+    ],
+)
+def test_a_shape_without_a_formula_keeps_its_numbers(
+    tmp_path: Path, lengths: dict[str, float], angles: dict[str, float]
+) -> None:
+    mechanism = _with_four_points(lengths, angles)
     motion = mechanism.sweep(step=30, certify=False)
     sheet = written(tmp_path, mechanism, motion)
     check_rows(sheet, motion)
     (told,) = mechanism.to_excel(tmp_path / "again.xlsx", motion)
     assert told.endswith(
-        "A C D: no formula connects these with the equations; they keep the values of the file"
+        f"{', '.join([*lengths, *angles])}: no formula connects these with the equations; "
+        "they keep the values of the file"
     )
 
 

@@ -9,7 +9,7 @@ line.
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, field
 
 from linkwork.equations.model import LinkAngle, MeasuredInPart, Redundant, Term
@@ -19,6 +19,7 @@ from linkwork.foundation.elementwise import (
     cis,
     copysign,
     degrees,
+    estimated,
     is_structurally_nonzero,
     phase,
     remainder,
@@ -57,6 +58,7 @@ class Frames:
     symbols: dict[str, float] = field(default_factory=dict)
     released: list[Redundant] = field(default_factory=list)
     measured: list[MeasuredInPart] = field(default_factory=list)
+    groups: _Orientation | None = None
 
     @classmethod
     def of(cls, linkage: Linkage, problems: Problems) -> Frames:
@@ -70,6 +72,7 @@ class Frames:
         for body in frames.bodies:
             frames.angle[body] = groups.angle_of(body)
         frames.start = groups.sketched_angles(frames.angle)
+        frames.groups = groups
         for body in frames.bodies:
             local = linkage.shapes.local[body]
             frames.places[body] = {p: Place(z, base=p) for p, z in local.items()}
@@ -134,6 +137,11 @@ class Frames:
     def now(self, angle: LinkAngle) -> float:
         """The variable part of an angle in the sketch [rad]."""
         return 0.0 if angle.variable is None else self.start[angle.variable]
+
+    def sketched(self, name: str) -> float:
+        """A variable in the sketch, from which parts measure: exact where its start is not."""
+        assert self.groups is not None
+        return self.groups.sketched_angle(name) if name in self.groups.drawn else self.start[name]
 
     def angles_of(self, bodies: Iterable[tuple[str, float]]) -> tuple[dict[str, float], float]:
         """Σ weight · angle of body as weights of variables by name, and a constant [rad]."""
@@ -239,15 +247,37 @@ class _Orientation:
         return 0.0
 
     def sketched_angles(self, angles: Mapping[str, LinkAngle]) -> dict[str, float]:
-        """The variables of all groups in the sketch [rad], by name.
+        """The variables of all groups in the sketch [rad], by name, as estimates."""
+        self.drawn = dict(self._drawn(angles))
+        return {name: self.sketched_angle(name, of_start=True) for name in self.drawn}
 
-        That of a driven link is its direction, every other one fits the links of its group best:
-        those that are drawn between most joints with other groups, at most two, since a flag that
-        is welded on may be drawn anywhere. Wheels of one point only count without other links.
+    def sketched_angle(self, name: str, *, of_start: bool = False) -> float:
+        """The variable of a group in the sketch [rad]; ``of_start``: as an estimate.
+
+        That of a driven link is its direction, every other one fits the links of its group best.
         """
-        found: dict[str, float] = {}
+        linkage, drawn = self.linkage, self.drawn[name]
+        spans = [linkage.sketched_span(b, of_start=of_start) for b, _ in drawn]
+        if drawn == [(name, 0.0)]:
+            return phase(spans[0])
+        # the constants are those of parts: they may have formulas
+        turns = [estimated(c) if of_start else c for _, c in drawn]
+        return phase(sum(z * cis(-turn) for z, turn in zip(spans, turns, strict=True)))
+
+    def _drawn(
+        self, angles: Mapping[str, LinkAngle]
+    ) -> Iterator[tuple[str, list[tuple[str, float]]]]:
+        """Every variable with the links that show it in the sketch, and their constants.
+
+        They are those with most joints to other groups, at most two, since a flag that is welded
+        on may be drawn anywhere. Wheels of one point only count without other links.
+        """
         carriers = self.linkage.carriers()
-        for name, members in self._groups(angles).items():
+        groups: dict[str, list[str]] = {}
+        for body, angle in angles.items():
+            if angle.variable is not None:
+                groups.setdefault(angle.variable, []).append(body)
+        for name, members in groups.items():
             joints: dict[int, list[str]] = {}
             for body in members if len(members) > 1 else ():
                 points = self.linkage.links[body]
@@ -255,19 +285,9 @@ class _Orientation:
                 joints.setdefault(min(len(joined), 2) if len(points) > 1 else -1, []).append(body)
             drawn = joints[max(joints)] if joints else members
             if name in drawn and (name in self._driven or len(drawn) == 1):
-                found[name] = self.linkage.sketched_angle(name)
-                continue
-            spans = (self.linkage.sketched_span(b) * cis(-angles[b].constant) for b in drawn)
-            found[name] = phase(sum(spans))
-        return found
-
-    def _groups(self, angles: Mapping[str, LinkAngle]) -> dict[str, list[str]]:
-        """The links of every variable."""
-        found: dict[str, list[str]] = {}
-        for body, angle in angles.items():
-            if angle.variable is not None:
-                found.setdefault(angle.variable, []).append(body)
-        return found
+                yield name, [(name, 0.0)]
+            else:
+                yield name, [(body, angles[body].constant) for body in drawn]
 
     def angle_of(self, body: str) -> LinkAngle:
         """The body's angle: its group's variable plus a constant; zero for ground."""

@@ -74,7 +74,7 @@ class PartRows:
         weights, constant = frames.angles_of(
             (body, uniform_value(weight)) for body, weight in turns
         )
-        now = sum(weight * frames.start[name] for name, weight in weights.items())
+        now = sum(weight * frames.sketched(name) for name, weight in weights.items())
         if length is not None:
             weights[length[0]] = length[1]
             now += length[1] * frames.start[length[0]]

@@ -24,6 +24,7 @@ __all__ = [
     "degrees",
     "detached",
     "display_value",
+    "estimated",
     "everywhere",
     "exponential",
     "finite",
@@ -243,6 +244,11 @@ def plain_value(x: _Number) -> _Number:
 def detached(x: _Number) -> _Number:
     """A number without derivatives, in arithmetics that know them."""
     return x.arithmetic.detached(x) if is_batched(x) else x
+
+
+def estimated(x: _Number) -> _Number:
+    """A number for an estimate, without its formula in arithmetics that know them."""
+    return x.arithmetic.estimate(x) if is_batched(x) else x
 
 
 def is_steady(x: float) -> bool:

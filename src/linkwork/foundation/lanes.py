@@ -87,6 +87,10 @@ class Consensus(Arithmetic[Any]):
         """A number without its derivatives, in arithmetics that know them."""
         return number
 
+    def estimate(self, number: Any) -> Any:
+        """A number for an estimate; arithmetics with formulas leave them out."""
+        return number
+
     def is_steady(self, number: Any) -> bool:
         """Whether a number has no derivatives, in arithmetics that know them."""
         return True

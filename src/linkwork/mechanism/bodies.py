@@ -7,7 +7,7 @@ from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, field
 from typing import TypeVar
 
-from linkwork.foundation.elementwise import phase, plain_value, sqrt, vector
+from linkwork.foundation.elementwise import estimated, phase, plain_value, sqrt, vector
 from linkwork.foundation.frozen import FrozenDict
 from linkwork.foundation.names import GROUND
 from linkwork.mechanism.dimensions import Number
@@ -93,11 +93,12 @@ class Bodies(LoadedBodies):
         """The angle of a link in the sketch [rad]; 0 for ground and wheels of one point."""
         return 0.0 if link == GROUND else phase(self.sketched_span(link))
 
-    def sketched_span(self, link: str) -> complex:
+    def sketched_span(self, link: str, *, of_start: bool = False) -> complex:
         """A vector in the direction of a link in the sketch, longer for larger links.
 
         A link of more than two points is turned so that its points are nearest to the sketched
-        ones, whichever of them is the first. 1 for a wheel of one point.
+        ones, whichever of them is the first. 1 for a wheel of one point. ``of_start``: for
+        estimates, without formulas.
         """
         points = self.links[link]
         sketched = [self.sketched(point) for point in points]
@@ -106,8 +107,9 @@ class Bodies(LoadedBodies):
             return 1.0 + 0j
         if len(points) == 2 or local is None:
             return sketched[1] - sketched[0]
-        middle, center = (sum(places) / len(points) for places in (sketched, local.values()))
-        exact = [local[point] - center for point in points]
-        size = sqrt(2.0 * sum(abs(place) ** 2 for place in exact))
+        exact = [estimated(local[point]) if of_start else local[point] for point in points]
+        middle, center = (sum(places) / len(points) for places in (sketched, exact))
+        size = sqrt(2.0 * sum(abs(place - center) ** 2 for place in exact))
         pairs = zip(sketched, exact, strict=True)
-        return sum(((z - middle) * place.conjugate() for z, place in pairs), 0j) / size
+        total = sum(((z - middle) * (place - center).conjugate() for z, place in pairs), 0j)
+        return total / size

@@ -164,7 +164,9 @@ class _Inverting:
             for name, points in linkage.links.items()
             if name != self.link
         }
-        inputs = tuple(inverted_input(linkage, given, frame) for given in linkage.inputs)
+        inputs = tuple(
+            inverted_input(linkage, given, frame, self.places) for given in linkage.inputs
+        )
         changes: dict[str, Any] = {
             "name": f"{linkage.name}, {self.link} fixed",
             "points": self._points(),

@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
 
 from linkwork.expression.grammar import parse
 from linkwork.expression.tree import names_in
+from linkwork.foundation.elementwise import phase
 from linkwork.foundation.errors import InputError
 from linkwork.foundation.names import GROUND, canonical
 from linkwork.mechanism.dimensions import Number
@@ -39,12 +41,20 @@ class Frame:
     turn: float
 
 
-def inverted_input(linkage: Linkage, which: Input, frame: Frame) -> Input:
+def inverted_input(
+    linkage: Linkage, which: Input, frame: Frame, places: Mapping[str, complex]
+) -> Input:
     """The input that drives the same relative angle or length.
 
     An angle relative to ground was measured from the x axis; now it is measured from the line of
     the old ground's first two points, so the table may begin at another number. If the new ground
-    was driven, the other link is driven relative to it in the opposite sense.
+    was driven, the other link is driven relative to it in the opposite sense. The table is shifted
+    by whole turns, which count for wheels, to where the input is sketched: within half a turn.
+
+    Parameters
+    ----------
+    places : Mapping[str, complex]
+        All points of the assembled position that becomes the sketch.
     """
     kind, name = which.drives
     # a length between two links is the same from every ground
@@ -61,24 +71,35 @@ def inverted_input(linkage: Linkage, which: Input, frame: Frame) -> Input:
             "give input= for the inversion"
         )
     turn = linkage.angle.from_radians(frame.turn) if against == GROUND else 0.0
+    ways = [_direction(linkage, body, places) for body in (link, against)]
+    seen = linkage.angle.from_radians(phase(ways[0] * ways[1].conjugate()))
     other = frame.name if against == GROUND else against
     speed = linkage.speed(which)
     if link == frame.ground:
         # relative to the driven link, the old ground turns in the opposite direction
         back = None if speed is None else -speed
         against_it = replace(which, link=other, joint=None, relative_to=None, speed=back)
-        return _ranged(linkage, against_it, -1.0, turn)
+        return _ranged(linkage, against_it, -1.0, turn, seen)
     same = replace(
         which,
         link=link,
         joint=None,
         relative_to=None if against == frame.ground else other,
     )
-    return _ranged(linkage, same, 1.0, -turn)
+    return _ranged(linkage, same, 1.0, -turn, seen)
 
 
-def _ranged(linkage: Linkage, which: Input, sign: float, shift: float) -> Input:
-    """The input with the table sign · value + shift."""
+def _direction(linkage: Linkage, link: str, places: Mapping[str, complex]) -> complex:
+    """A vector along a link in a position, along the x axis for ground."""
+    points = linkage.links[link]
+    straight = link == GROUND or len(points) < 2
+    return 1.0 + 0j if straight else places[points[1]] - places[points[0]]
+
+
+def _ranged(linkage: Linkage, which: Input, sign: float, shift: float, seen: float) -> Input:
+    """The input with the table sign · value + shift; ``seen`` is a value that is sketched."""
+    there = sign * seen + shift
+    shift -= linkage.angle.turn * round(there / linkage.angle.turn)
     if sign > 0 and not shift:
         return which
     start: Number = 0.0 if which.start is None else which.start

@@ -64,8 +64,8 @@ def write(gear: NoncircularGear, key: Key, rows: PartRows) -> None:
     if gear.phase is not None:
         constant = held - q * linkage.numbers(gear.phase) * radians + _at(law, begin)
     else:
-        angle = sum(weight * frames.start[name] for name, weight in inner.items()) + offset
-        now = sum(weight * frames.start[name] for name, weight in weights.items())
+        angle = sum(weight * frames.sketched(name) for name, weight in inner.items()) + offset
+        now = sum(weight * frames.sketched(name) for name, weight in weights.items())
         constant = _at(law, uniform_value(angle)) - now
         value = (held + _at(law, begin) - constant) / q
         rows.measured.append(MeasuredInPart(gear.name, "phase", value, "angle"))

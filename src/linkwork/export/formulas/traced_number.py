@@ -73,6 +73,10 @@ class Trace(Consensus):
         """The number with its formula: what needs a plain one refuses it later."""
         return number
 
+    def estimate(self, number: Any) -> Any:
+        """The number without its formula."""
+        return self.value_in(number, 0)
+
     def apply(self, function: Callable[..., Any], *numbers: object) -> TracedNumber:
         """A function for which there is a formula."""
         if function is np.where:
