@@ -181,8 +181,13 @@ class Frames:
 
     def sketched_sum(self, weights: Mapping[str, float]) -> Precise:
         """Σ weight · variable in the sketch."""
-        parts = (self.sketched[name]() * weight for name, weight in weights.items())
-        return sum(parts, Precise(0.0))
+        total = Precise(0.0)
+        for name, weight in weights.items():
+            exact = self.sketched[name]()
+            # half a turn may be rounded to the other one
+            turns = round((self.start[name] - exact.high) / math.tau)
+            total = total + (exact + PI * (2.0 * turns)) * weight
+        return total
 
     def vector_term(
         self, z: complex | Precise, shown: Node | None, body: str, length: str | None = None

@@ -7,7 +7,7 @@ from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any, TypeVar
 
-from linkwork.foundation.elementwise import phase, plain_value, sqrt, vector
+from linkwork.foundation.elementwise import choose, phase, plain_value, sqrt, vector
 from linkwork.foundation.frozen import FrozenDict
 from linkwork.foundation.names import GROUND
 from linkwork.foundation.precise import (
@@ -24,6 +24,7 @@ __all__ = ["Bodies", "Measured", "Shapes"]
 
 
 P = TypeVar("P")
+_HALF_TURN = -math.pi + 1e-12  # [rad]
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -114,7 +115,11 @@ class Bodies(LoadedBodies):
 
     def sketched_angle(self, link: str) -> float:
         """The angle of a link in the sketch [rad]; 0 for ground and wheels of one point."""
-        return 0.0 if link == GROUND else phase(self.sketched_span(link))
+        if link == GROUND:
+            return 0.0
+        angle = phase(self.sketched_span(link))
+        # half a turn is positive, whichever way it is rounded
+        return choose(angle < _HALF_TURN, angle + math.tau, angle)
 
     def sketched_span(self, link: str) -> complex:
         """A vector in the direction of a link in the sketch, longer for larger links.
@@ -123,7 +128,8 @@ class Bodies(LoadedBodies):
         ones, whichever of them is the first. 1 for a wheel of one point.
         """
         sketched = [self.sketched(point) for point in self.links[link]]
-        return _span(sketched, self.shapes.local.get(link), sqrt)
+        span: complex = _span(sketched, self.shapes.local.get(link), sqrt)
+        return span
 
     def exact_angle(self, link: str) -> Precise:
         """:meth:`sketched_angle`, as exact as the formulas of coordinates."""
