@@ -42,6 +42,7 @@ from tests.campaigns.poses import pose_campaign
 from tests.campaigns.positions import library_positions, random_position
 from tests.campaigns.precision_points import precision_campaign
 from tests.campaigns.processors import processor_campaign
+from tests.campaigns.radii import radius_campaign
 from tests.campaigns.roots import root_campaign
 from tests.campaigns.steps import judge_steps
 from tests.campaigns.study import study_campaign
@@ -149,6 +150,10 @@ def _orders(part: int) -> tuple[Counter[str], list[str]]:
     return order_campaign(part, _OWN_PART["orders"])
 
 
+def _radii(part: int) -> tuple[Counter[str], list[str]]:
+    return radius_campaign(part, _PART)
+
+
 def _precision_points(part: int) -> tuple[Counter[str], list[str]]:
     return precision_campaign(part, _OWN_PART["precision-points"])
 
@@ -176,6 +181,7 @@ def _gradients(part: int) -> tuple[Counter[str], list[str]]:
 #: What one part does, and how many things the whole campaign looks at.
 CAMPAIGNS: dict[str, tuple[Callable[[int], tuple[Counter[str], list[str]]], int]] = {
     "certificates": (_certificates, 10_000),
+    "radii": (_radii, 6_200),
     "steps": (_steps, 1_000),
     "lanes": (_lanes, 1_000),
     "motion": (_motion, 10_000),

@@ -10,7 +10,8 @@ import numpy as np
 from linkwork.equations.cam_program import FollowerPath, program
 from linkwork.equations.frames import Frames
 from linkwork.foundation.arrays import Array, ComplexArray
-from linkwork.foundation.elementwise import copysign, phase, plain_value
+from linkwork.foundation.elementwise import copysign, plain_value
+from linkwork.foundation.precise import Precise, acos, asin, phase, sqrt
 from linkwork.kernels.piecewise import Piecewise
 from linkwork.mechanism.linkage import Linkage
 from linkwork.mechanism.part.cam import Cam, follower_frame
@@ -30,7 +31,7 @@ class Follower:
 
     path: FollowerPath
     frame: str
-    constant: float
+    constant: Precise
     sign: float
     length: str = ""
     angles: tuple[tuple[str, float], ...] = ()
@@ -38,13 +39,10 @@ class Follower:
 
 def program_of(cam: Cam, linkage: Linkage) -> Piecewise:
     """The follower's motion over one turn, [length] or [rad]."""
-    numbers, radians = linkage.numbers, linkage.angle.radians
-    scale = 1.0 if cam.slider is not None else radians
+    numbers = linkage.numbers
+    lift = numbers.precise_angle if cam.slider is None else numbers.precise
     return program(
-        [
-            (part.law, numbers(part.over) * radians, numbers(part.lift) * scale)
-            for part in cam.segments
-        ]
+        [(part.law, numbers.precise_angle(part.over), lift(part.lift)) for part in cam.segments]
     )
 
 
@@ -60,24 +58,28 @@ def follower_of(cam: Cam, frames: Frames, motion: Piecewise) -> Follower | str:
 def _sliding(cam: Cam, guide: GuidePart, frames: Frames, motion: Piecewise) -> Follower | str:
     """s = foot ± (√((base + roller)² - e²) + motion), a flat face s = foot ± (base + motion)."""
     linkage = frames.linkage
-    numbers = linkage.numbers
-    local = linkage.shapes.local[guide.on]
-    a, b = (local[p] for p in guide.line)
-    along: complex = (b - a) / abs(b - a)
-    center = (local[cam.center] - a) * along.conjugate()
-    offset = numbers(guide.offset) if isinstance(guide, Slider) else 0.0
-    e = offset - center.imag
-    base, roller = numbers(cam.base or 0), numbers(cam.radius)
-    sign = plain_value(copysign(1.0, frames.start[guide.name] - center.real))
+    numbers, shapes = linkage.numbers, linkage.shapes
+    direction = shapes.direction(guide.on, guide.line)
+    origin = shapes.place(guide.on, guide.line[0])
+    center = (shapes.place(guide.on, cam.center) - origin) * direction.conjugate()
+    offset = numbers.precise(guide.offset if isinstance(guide, Slider) else 0)
+    away = offset - center.imag
+    reach, roller = (
+        numbers.precise(cam.base or 0) + numbers.precise(cam.radius),
+        numbers(cam.radius),
+    )
+    sign = plain_value(copysign(1.0, frames.start[guide.name] - center.high.real))
     flat = cam.contact == "flat"
-    if not flat and base + roller <= abs(e):
+    between = abs(away)
+    if not flat and (reach - between).high <= 0.0:
         return (
-            f"is too small: the follower passes the centre at a distance of {abs(e):.6g}, the "
-            f"base circle{' with the roller' if roller else ''} reaches only {base + roller:.6g}"
+            f"is too small: the follower passes the centre at a distance of {between.high:.6g}, "
+            f"the base circle{' with the roller' if roller else ''} reaches only {reach.high:.6g}"
         )
-    # the difference of squares in two factors, which do not overflow
-    reach = base + roller
-    low = base if flat else math.sqrt(reach - abs(e)) * math.sqrt(reach + abs(e))
+    foot = numbers.precise(cam.base or 0) if flat else sqrt((reach - between) * (reach + between))
+    # designs without a common outline are built one at a time
+    low = foot.high if flat else float(foot.high)
+    along, e = direction.high, away.high
     deepest = float(motion(motion.breaks).min())
     if low + deepest <= 0.0:
         return (
@@ -97,7 +99,7 @@ def _sliding(cam: Cam, guide: GuidePart, frames: Frames, motion: Piecewise) -> F
     return Follower(
         path=FollowerPath(motion=motion, place=place, roller=roller, flat=flat),
         frame=guide.on,
-        constant=-(center.real + sign * low),
+        constant=-(center.real + foot * sign),
         sign=sign,
         length=guide.name,
     )
@@ -111,20 +113,23 @@ def _swinging(cam: Cam, frames: Frames, motion: Piecewise) -> Follower | str:
     assert cam.pivot is not None
     assert cam.point is not None
     frame = follower_frame(linkage, cam)
-    local, own = linkage.shapes.local[frame], linkage.shapes.local[cam.link]
-    arm = own[cam.point] - own[cam.pivot]
-    ground = local[cam.center] - local[cam.pivot]
-    base, roller = numbers(cam.base or 0), numbers(cam.radius)
-    a, d = abs(arm), abs(ground)
+    shapes = linkage.shapes
+    arm = shapes.place(cam.link, cam.point) - shapes.place(cam.link, cam.pivot)
+    line = shapes.place(frame, cam.center) - shapes.place(frame, cam.pivot)
+    base, roller = numbers.precise(cam.base or 0), numbers(cam.radius)
+    along, across = abs(arm), abs(line)
     flat = cam.contact == "flat"
-    reach = base + roller
-    cosine = 0.5 * (a / d + d / a - reach / a * (reach / d))
-    if (flat and base >= d) or (not flat and abs(cosine) >= 1.0):
+    reach = base + numbers.precise(cam.radius)
+    # each quotient is finite, unlike squares of large lengths
+    cosine = (along / across + across / along - reach / along * (reach / across)) * 0.5
+    a, d = along.high, across.high
+    if (flat and base.high >= d) or (not flat and abs(cosine.high) >= 1.0):
         return (
             f"does not fit: a follower whose arm of {a:.6g} swings about a pivot {d:.6g} away from "
-            f"the cam's centre cannot touch a circle of {base + roller:.6g}"
+            f"the cam's centre cannot touch a circle of {reach.high:.6g}"
         )
-    low = math.asin(base / d) if flat else math.acos(cosine)
+    begin = asin(base / across) if flat else acos(cosine)
+    low = float(begin.high)  # designs without a common outline are built one at a time
     swing = low + motion(motion.breaks)
     # across the line of centres the angle would be that of the mirrored follower
     if swing.min() <= 0.0 or swing.max() >= math.pi:
@@ -136,10 +141,11 @@ def _swinging(cam: Cam, frames: Frames, motion: Piecewise) -> Follower | str:
         )
     pivot, center, tip = (linkage.sketched(q) for q in (cam.pivot, cam.center, cam.point))
     sign = plain_value(copysign(1.0, ((tip - pivot) * (center - pivot).conjugate()).imag))
-    line = phase(ground)
+    way_of_centres = phase(line)
+    ground = line.high
 
     def place(s: Array, s1: Array, s2: Array) -> tuple[ComplexArray, ...]:
-        way = np.exp(1j * (line + sign * (low + s)))
+        way = np.exp(1j * (way_of_centres.high + sign * (low + s)))
         nothing = np.zeros(len(s), dtype=complex)
         if flat:
             return nothing - ground, nothing, nothing, way, 1j * sign * s1 * way
@@ -152,7 +158,7 @@ def _swinging(cam: Cam, frames: Frames, motion: Piecewise) -> Follower | str:
     return Follower(
         path=FollowerPath(motion=motion, place=place, roller=roller, flat=flat),
         frame=frame,
-        constant=phase(arm) - line - sign * low,
+        constant=phase(arm) - way_of_centres - begin * sign,
         sign=sign,
         angles=((cam.link, 1.0), (frame, -1.0)),
     )

@@ -9,6 +9,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from linkwork.foundation.arrays import Array, ComplexArray
+from linkwork.foundation.precise import PI, Precise, precise
 from linkwork.kernels.piecewise import Piecewise
 from linkwork.mechanism.motion_laws import pieces_of
 
@@ -18,17 +19,18 @@ _SAMPLES = 1440  # points of the drawn outline
 _PARTS = 16  # additional checks of the outline per piece of the motion
 
 
-def program(segments: Sequence[tuple[str, float, float]]) -> Piecewise:
+def program(segments: Sequence[tuple[str, float | Precise, float | Precise]]) -> Piecewise:
     """The follower's motion as a function of the cam's angle from 0 to 2π.
 
     ``segments``: law, angle of the cam [rad] and lift, in order. Angles are scaled to a total of
     one turn and the last lift is adjusted to return the follower, so that the function is periodic;
     the given numbers must nearly satisfy this.
     """
-    breaks, powers, sines, height = [0.0], [], [], 0.0
-    stretch = 2.0 * math.pi / sum(over for _, over, _ in segments)
-    last = max((k for k, (_, _, lift) in enumerate(segments) if lift), default=-1)
-    for number, (law, given, rise) in enumerate(segments):
+    breaks, powers, sines, height = [Precise(0.0)], [], [], Precise(0.0)
+    exact = [(law, precise(over), precise(lift)) for law, over, lift in segments]
+    stretch = PI * 2.0 / sum((over for _, over, _ in exact), Precise(0.0))
+    last = max((k for k, (_, _, lift) in enumerate(exact) if lift.high), default=-1)
+    for number, (law, given, rise) in enumerate(exact):
         # the last rise closes the motion, since sums of given lifts are rounded
         over, lift = given * stretch, -height if number == last else rise
         begin = breaks[-1]
@@ -37,16 +39,18 @@ def program(segments: Sequence[tuple[str, float, float]]) -> Piecewise:
             done += piece.over
             breaks.append(begin + over * min(done, 1.0))
             row = np.zeros(8)
-            scaled = [lift * c / over**k for k, c in enumerate(piece.powers)]
-            row[: len(scaled)] = scaled
-            row[0] += height
+            factor = lift
+            for k, c in enumerate(piece.powers):
+                row[k] = (factor * c + (height if k == 0 else 0.0)).high
+                factor = factor / over
             powers.append(row)
             a, w, p = piece.sine
-            sines.append((lift * a, w / over, p))
-        height += lift
+            sines.append(((lift * a).high, (w / over).high, p))
+        height = height + lift
+    rounded = np.array([place.high for place in breaks])
     # exactly one turn
-    breaks[-1] = 2.0 * math.pi
-    return Piecewise(breaks=np.array(breaks), powers=np.array(powers), sines=np.array(sines))
+    rounded[-1] = 2.0 * math.pi
+    return Piecewise(breaks=rounded, powers=np.array(powers), sines=np.array(sines))
 
 
 class Undercut(Exception):

@@ -224,7 +224,17 @@ def _table(equations: LoopEquations, index: Mapping[str, int]) -> LoopTable:
         ),
         variable_scale=np.array(weights, dtype=float),
         is_angle=np.array([v.kind == "angle" for v in equations.variables], dtype=bool),
+        link_constant=_link_constants(equations, index),
     )
+
+
+def _link_constants(equations: LoopEquations, index: Mapping[str, int]) -> Array:
+    """Half a turn for variables with which a link turns at an angle, as designs may have it."""
+    found = np.zeros(len(index))
+    for link in equations.links.values():
+        if link.variable is not None and display_value(link.constant):
+            found[index[canonical(link.variable)]] = np.pi
+    return found
 
 
 def _law_row(law: LawEquation, index: Mapping[str, int]) -> LawRow:
@@ -237,6 +247,7 @@ def _law_row(law: LawEquation, index: Mapping[str, int]) -> LawRow:
         law=law.law,
         inner=np.array([inner.get(name, 0.0) for name in names]),
         offset=law.offset,
+        error=law.error,
     )
 
 

@@ -9,8 +9,9 @@ line.
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, field
+from functools import partial
 
 from linkwork.equations.model import LinkAngle, MeasuredInPart, Redundant, Term
 from linkwork.expression.grammar import parse
@@ -21,15 +22,18 @@ from linkwork.foundation.elementwise import (
     degrees,
     estimated,
     is_structurally_nonzero,
-    phase,
+    phase as phase_of,
     remainder,
     snap,
 )
 from linkwork.foundation.names import GROUND, canonical
+from linkwork.foundation.precise import PI, Precise, chosen, joined, phase, precise, sin_cos
 from linkwork.mechanism.description import Problems
 from linkwork.mechanism.linkage import Linkage
 
 __all__ = ["Frames", "Place"]
+
+_SQUARE = 1.3e-16  # [rad] between the floats π and π/2 and the right angles they are
 
 
 @dataclass(frozen=True)
@@ -39,14 +43,22 @@ class Place:
     fixed: complex
     sliding: tuple[Term, ...] = ()
     base: str = ""  # the point at the tip of the fixed vector, for naming
+    rest: complex = 0j  # what ``fixed`` loses where it is rounded
+
+    @property
+    def tip(self) -> Precise:
+        """The fixed vector."""
+        return Precise(self.fixed, self.rest)
 
 
 @dataclass
 class Frames:
     """All bodies of a linkage with the positions of their points.
 
-    ``bodies`` in the file's order, ground first. ``angle[body]`` is its variable and constant.
-    ``places[body][point]``. ``symbols`` collects the named lengths in use.
+    ``bodies`` in the file's order, ground first. ``angle[body]`` is its variable and constant,
+    ``constant[body]`` the constant before it is rounded. ``places[body][point]``. ``symbols``
+    collects the named lengths in use. ``start`` are the variables in the sketch as estimates,
+    ``sketched`` the same before they are rounded, with their formulas.
     """
 
     linkage: Linkage
@@ -58,7 +70,8 @@ class Frames:
     symbols: dict[str, float] = field(default_factory=dict)
     released: list[Redundant] = field(default_factory=list)
     measured: list[MeasuredInPart] = field(default_factory=list)
-    groups: _Orientation | None = None
+    constant: dict[str, Precise] = field(default_factory=dict)
+    sketched: dict[str, Callable[[], Precise]] = field(default_factory=dict)
 
     @classmethod
     def of(cls, linkage: Linkage, problems: Problems) -> Frames:
@@ -68,21 +81,31 @@ class Frames:
         groups = _Orientation(linkage, problems)
         for _, part in linkage.keyed_parts:
             if (angle := part.measured_angle(linkage)) is not None:
-                frames.measured.append(MeasuredInPart(part.label, "angle", angle, "angle"))
+                frames.measured.append(MeasuredInPart(part.label, "angle", angle.high, "angle"))
         for body in frames.bodies:
-            frames.angle[body] = groups.angle_of(body)
-        frames.start = groups.sketched_angles(frames.angle)
-        frames.groups = groups
+            variable, frames.constant[body] = groups.angle_of(body)
+            frames.angle[body] = LinkAngle(variable=variable, constant=frames.constant[body].high)
+        for name, drawn in groups.drawn(frames.angle).items():
+            if drawn == [name]:
+                frames.start[name] = linkage.sketched_angle(name, of_start=True)
+                frames.sketched[name] = partial(linkage.exact_angle, name)
+                continue
+            spans = (
+                linkage.sketched_span(b, of_start=True) * cis(-estimated(frames.angle[b].constant))
+                for b in drawn
+            )
+            frames.start[name] = phase_of(sum(spans))
+            frames.sketched[name] = partial(frames._sketched_angle, drawn)
         for body in frames.bodies:
-            local = linkage.shapes.local[body]
-            frames.places[body] = {p: Place(z, base=p) for p, z in local.items()}
+            local, rest = linkage.shapes.local[body], linkage.shapes.rest[body]
+            frames.places[body] = {p: Place(z, base=p, rest=rest[p]) for p, z in local.items()}
         return frames
 
     def add_guide(
         self,
         guide: tuple[str, str, tuple[str, str]],
         point: str,
-        offset: float = 0.0,
+        offset: Precise | None = None,
         symbol: str = "",
     ) -> None:
         """Add the position of a guided point in the body with the line.
@@ -90,78 +113,99 @@ class Frames:
         ``guide``: the displacement's name, the body, two points of its line.
         """
         linkage, (own, body, line) = self.linkage, guide
-        s, t = (linkage.shapes.local[body][p] for p in line)
-        along = (t - s) / abs(t - s)
+        along = linkage.shapes.direction(body, line)
         terms = [self.vector_term(along, None, body, own)]
-        if is_structurally_nonzero(offset):
+        if offset is not None and is_structurally_nonzero(offset.high):
             name = canonical(symbol)
-            self.symbols[name] = abs(offset)
+            self.symbols[name] = abs(offset.high)
             # the term keeps a positive length, so that formulas show it without a sign
-            sideways = 1j * along * copysign(1.0, offset)
+            sideways = along * (1j * copysign(1.0, offset.high))
             terms.append(self.vector_term(sideways * abs(offset), Name(name, name), body))
-        self.places[body][point] = Place(s, tuple(terms), base=line[0])
+        origin = self.places[body][line[0]]
+        self.places[body][point] = Place(origin.fixed, tuple(terms), line[0], origin.rest)
         self.lengths.append(own)
-        a, b, p = (linkage.sketched(q) for q in (*line, point))
-        self.start[own] = ((p - a) * (b - a).conjugate()).real / abs(b - a)
+        a, b, p = (linkage.precisely_sketched(q) for q in (*line, point))
+        place = ((p - a) * (b - a).conjugate()).real / abs(b - a)
+        self.start[own], self.sketched[own] = place.high, lambda: place
 
     def add_rod(
-        self, name: str, between: tuple[str, str], length: float | None = None, angle: str = ""
+        self, name: str, between: tuple[str, str], length: Precise | None = None, angle: str = ""
     ) -> None:
         """Add a body between two points, of a given length or a variable length with its name."""
         a, b = between
         turning = angle or name
         self.bodies.append(name)
-        self.angle[name] = LinkAngle(variable=turning, constant=0.0)
-        span = self.linkage.sketched(b) - self.linkage.sketched(a)
-        self.start[turning] = phase(span)
+        self.angle[name], self.constant[name] = (
+            LinkAngle(variable=turning, constant=0.0),
+            Precise(0.0),
+        )
+        span = self.linkage.precisely_sketched(b) - self.linkage.precisely_sketched(a)
+        self.start[turning], self.sketched[turning] = phase_of(span.high), lambda: phase(span)
         if length is None:
             rod = self.vector_term(1.0 + 0j, None, name, name)
             self.lengths.append(name)
-            self.start[name] = abs(span)
+            self.start[name] = abs(span.high)
         else:
             symbol = canonical(f"{name}_rod")
-            self.symbols[symbol] = length
+            self.symbols[symbol] = length.high
             rod = self.vector_term(length + 0j, Name(symbol, symbol), name)
         self.places[name] = {a: Place(0j, base=a), b: Place(0j, (rod,), base=a)}
 
     def release(self, link: str, a: str, b: str) -> None:
         """Make the distance between two points of a link an unknown."""
         name = f"{link}_length"
-        first = self.places[link][a].fixed
-        span = self.places[link][b].fixed - first
+        first = self.places[link][a]
+        span = self.places[link][b].tip - first.tip
         along = self.vector_term(span / abs(span), None, link, name)
-        self.places[link][b] = Place(first, (along,), base=a)
-        self.start[name] = abs(span)
-        self.released.append(Redundant(variable=name, link=link, points=(a, b), length=abs(span)))
+        self.places[link][b] = Place(first.fixed, (along,), a, first.rest)
+        length = self.start[name] = abs(span).high
+        self.released.append(Redundant(variable=name, link=link, points=(a, b), length=length))
+
+    def _sketched_angle(self, drawn: Iterable[str]) -> Precise:
+        """The angle that fits some links of a group in the sketch [rad]."""
+        total = Precise(0j)
+        for body in drawn:
+            sine, cosine = sin_cos(self.constant[body])
+            total = total + self.linkage.exact_span(body) * joined(cosine, -sine)
+        return phase(total)
 
     def now(self, angle: LinkAngle) -> float:
         """The variable part of an angle in the sketch [rad]."""
         return 0.0 if angle.variable is None else self.start[angle.variable]
 
-    def sketched(self, name: str) -> float:
-        """A variable in the sketch, from which parts measure: exact where its start is not."""
-        assert self.groups is not None
-        return self.groups.sketched_angle(name) if name in self.groups.drawn else self.start[name]
-
-    def angles_of(self, bodies: Iterable[tuple[str, float]]) -> tuple[dict[str, float], float]:
+    def angles_of(self, bodies: Iterable[tuple[str, float]]) -> tuple[dict[str, float], Precise]:
         """Σ weight · angle of body as weights of variables by name, and a constant [rad]."""
         weights: dict[str, float] = {}
-        constant = 0.0
+        constant = Precise(0.0)
         for body, weight in bodies:
             angle = self.angle[body]
-            constant += weight * angle.constant
+            constant = constant + self.constant[body] * weight
             if angle.variable is not None:
                 weights[angle.variable] = weights.get(angle.variable, 0.0) + weight
         return {name: weight for name, weight in weights.items() if weight}, constant
 
+    def sketched_sum(self, weights: Mapping[str, float]) -> Precise:
+        """Σ weight · variable in the sketch."""
+        total = Precise(0.0)
+        for name, weight in weights.items():
+            exact = self.sketched[name]()
+            # half a turn may be rounded to the other one
+            turns = round((self.start[name] - estimated(exact.high)) / math.tau)
+            total = total + (exact + PI * (2.0 * turns)) * weight
+        return total
+
     def vector_term(
-        self, z: complex, shown: Node | None, body: str, length: str | None = None
+        self, z: complex | Precise, shown: Node | None, body: str, length: str | None = None
     ) -> Term:
-        """A vector of the body's frame as a term."""
+        """A vector of the body's frame as a term: its coefficient is rounded once."""
         angle = self.angle[body]
         turning = ((canonical(angle.variable), 1.0),) if angle.variable is not None else ()
         symbol = None if length is None else canonical(length)
-        return Term.vector(z * cis(angle.constant), shown, symbol, turning)
+        vector = precise(z)
+        if is_structurally_nonzero(angle.constant):
+            sine, cosine = sin_cos(self.constant[body])
+            vector = vector * joined(cosine, sine)
+        return Term.vector(vector.high, shown, symbol, turning)
 
     def between(self, body: str, start: str, end: str) -> list[Term]:
         """The vector from one point to another across a body, as terms."""
@@ -169,7 +213,7 @@ class Frames:
         terms = []
         if a.base != b.base:
             shown = self._distance(body, a.base, b.base)
-            terms.append(self.vector_term(b.fixed - a.fixed, shown, body))
+            terms.append(self.vector_term(b.tip - a.tip, shown, body))
         terms += [term.negated() for term in a.sliding]
         terms += list(b.sliding)
         return terms
@@ -196,7 +240,8 @@ class _Orientation:
 
     def __init__(self, linkage: Linkage, problems: Problems) -> None:
         self.linkage = linkage
-        self._parent: dict[str, tuple[str, float]] = {b: (b, 0.0) for b in linkage.links}
+        none = Precise(0.0)
+        self._parent: dict[str, tuple[str, Precise]] = {b: (b, none) for b in linkage.links}
         for key, part in linkage.keyed_parts:
             kept = part.kept_angle(linkage)
             gap = 0.0 if kept is None else self._join(*kept)
@@ -218,9 +263,9 @@ class _Orientation:
                 self._name[root] = body
         self._ground = self.root(GROUND)
 
-    def _find(self, body: str) -> tuple[str, float]:
+    def _find(self, body: str) -> tuple[str, Precise]:
         """The group's root and θ_body - θ_root."""
-        total = 0.0
+        total = Precise(0.0)
         while self._parent[body][0] != body:
             body, offset = self._parent[body]
             total += offset
@@ -235,43 +280,25 @@ class _Orientation:
         several = len(self.linkage.links[body]) > 1
         return several or body in self.linkage.turning_on_one_point
 
-    def _join(self, link: str, on: str, constant: float) -> float:
+    def _join(self, link: str, on: str, constant: Precise) -> float:
         """Set θ_link = θ_on + constant; returns the contradiction to known angles [rad]."""
         a, offset_a = self._find(link)
         b, offset_b = self._find(on)
         if a == b:
-            gap = remainder(offset_a - offset_b - constant, 2 * math.pi)
+            gap = remainder((offset_a - offset_b - constant).high, 2 * math.pi)
             return gap if abs(gap) > 1e-9 else 0.0
         # θ_a = θ_link - offset_a and θ_b = θ_on - offset_b
         self._parent[a] = (b, constant + offset_b - offset_a)
         return 0.0
 
-    def sketched_angles(self, angles: Mapping[str, LinkAngle]) -> dict[str, float]:
-        """The variables of all groups in the sketch [rad], by name, as estimates."""
-        self.drawn = dict(self._drawn(angles))
-        return {name: self.sketched_angle(name, of_start=True) for name in self.drawn}
+    def drawn(self, angles: Mapping[str, LinkAngle]) -> dict[str, list[str]]:
+        """The links whose sketch gives the variables of all groups, by name.
 
-    def sketched_angle(self, name: str, *, of_start: bool = False) -> float:
-        """The variable of a group in the sketch [rad]; ``of_start``: as an estimate.
-
-        That of a driven link is its direction, every other one fits the links of its group best.
+        That of a driven link is its direction, every other one fits the links of its group best:
+        those that are drawn between most joints with other groups, at most two, since a flag that
+        is welded on may be drawn anywhere. Wheels of one point only count without other links.
         """
-        linkage, drawn = self.linkage, self.drawn[name]
-        spans = [linkage.sketched_span(b, of_start=of_start) for b, _ in drawn]
-        if drawn == [(name, 0.0)]:
-            return phase(spans[0])
-        # the constants are those of parts: they may have formulas
-        turns = [estimated(c) if of_start else c for _, c in drawn]
-        return phase(sum(z * cis(-turn) for z, turn in zip(spans, turns, strict=True)))
-
-    def _drawn(
-        self, angles: Mapping[str, LinkAngle]
-    ) -> Iterator[tuple[str, list[tuple[str, float]]]]:
-        """Every variable with the links that show it in the sketch, and their constants.
-
-        They are those with most joints to other groups, at most two, since a flag that is welded
-        on may be drawn anywhere. Wheels of one point only count without other links.
-        """
+        found: dict[str, list[str]] = {}
         carriers = self.linkage.carriers()
         groups: dict[str, list[str]] = {}
         for body, angle in angles.items():
@@ -284,23 +311,26 @@ class _Orientation:
                 joined = [p for p in points if not {*members}.issuperset(carriers[p])]
                 joints.setdefault(min(len(joined), 2) if len(points) > 1 else -1, []).append(body)
             drawn = joints[max(joints)] if joints else members
-            if name in drawn and (name in self._driven or len(drawn) == 1):
-                yield name, [(name, 0.0)]
-            else:
-                yield name, [(body, angles[body].constant) for body in drawn]
+            found[name] = [name] if name in drawn and name in self._driven else drawn
+        return found
 
-    def angle_of(self, body: str) -> LinkAngle:
+    def angle_of(self, body: str) -> tuple[str | None, Precise]:
         """The body's angle: its group's variable plus a constant; zero for ground."""
         root, offset = self._find(body)
         if root == self._ground:
-            return LinkAngle(variable=None, constant=_tidy(offset - self._find(GROUND)[1]))
+            return None, _tidy(offset - self._find(GROUND)[1])
         name = self._name[root]
-        return LinkAngle(variable=name, constant=_tidy(offset - self._find(name)[1]))
+        return name, _tidy(offset - self._find(name)[1])
 
 
-def _tidy(angle: float) -> float:
+def _tidy(angle: Precise) -> Precise:
     """The angle in (-π, π], rounded to a multiple of a right angle if very near."""
-    reduced = remainder(angle, 2 * math.pi)
-    square = round(reduced / (math.pi / 2)) * math.pi / 2
-    # a right angle with rounding error would leave a tiny term in every equation
-    return snap(abs(reduced - square) < 1e-15, square, reduced)
+    if not angle.has_rest:
+        reduced = remainder(angle.high, 2 * math.pi)
+        square = round(reduced / (math.pi / 2)) * math.pi / 2
+        # a right angle with rounding error would leave a tiny term in every equation
+        return Precise(snap(abs(reduced - square) < 1e-15, square, reduced))
+    turns = round(angle.high / (2 * math.pi))
+    reduced = angle - PI * (2.0 * turns)
+    square = PI * (0.5 * round(reduced.high / (math.pi / 2)))
+    return chosen(abs((reduced - square).high) < _SQUARE, square, reduced)

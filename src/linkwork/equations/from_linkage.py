@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 
@@ -24,6 +25,7 @@ from linkwork.expression.tree import Name
 from linkwork.foundation.elementwise import cis, hypot, largest, phase, row_of, smallest
 from linkwork.foundation.errors import MechanismError, Problem
 from linkwork.foundation.names import GROUND, canonical, pretty
+from linkwork.foundation.precise import PI
 from linkwork.mechanism.description import Problems
 from linkwork.mechanism.driven_input import Input
 from linkwork.mechanism.linkage import Linkage
@@ -161,16 +163,17 @@ class _LoopWriter:
         """θ_link - θ_against - input = 0."""
         angle, base = self.frames.angle[link], self.frames.angle[against]
         terms = [(canonical(column), -1.0)]
-        value = angle.constant - base.constant
+        constant = self.frames.constant[link] - self.frames.constant[against]
+        value = constant.high
         for sign, part in ((1.0, angle), (-1.0, base)):
             if part.variable is not None:
                 terms.append((canonical(part.variable), sign))
                 value += sign * self.frames.start[part.variable]
         # the input within half a turn, as sketched; the constant takes the whole turns
         wrapped = phase(cis(value))
-        constant = angle.constant - base.constant + wrapped - value  # differs by whole turns
+        rounded = (constant + PI * (2.0 * round((wrapped - value) / math.tau))).high
         self.linear.append(
-            LinearEquation(label=f"{link} against {against}", terms=tuple(terms), constant=constant)
+            LinearEquation(label=f"{link} against {against}", terms=tuple(terms), constant=rounded)
         )
         self.start[column] = wrapped
 

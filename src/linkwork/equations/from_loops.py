@@ -39,6 +39,7 @@ def read_loops(mechanism: Loops) -> LoopEquations:
     numbers = mechanism.numbers
     reader = PhasorReader(
         numbers.known,
+        numbers.precise_tree,
         numbers.unit,
         spelling.__contains__,
         known=(*spelling.values(), *mechanism.dimensions),
@@ -50,8 +51,8 @@ def read_loops(mechanism: Loops) -> LoopEquations:
             loops.append(
                 LoopEquation(
                     label=label,
-                    left=tuple(_term(m, text) for m in left if is_structurally_nonzero(m.value)),
-                    right=tuple(_term(m, text) for m in right if is_structurally_nonzero(m.value)),
+                    left=_terms(left, text),
+                    right=_terms(right, text),
                 )
             )
         except ExpressionError as error:
@@ -93,6 +94,10 @@ def read_loops(mechanism: Loops) -> LoopEquations:
     )
 
 
+def _terms(monomials: list[Monomial], text: str) -> tuple[Term, ...]:
+    return tuple(_term(m, text) for m in monomials if is_structurally_nonzero(m.value.high))
+
+
 def _term(m: Monomial, text: str) -> Term:
     if len(m.factors) > 1:
         raise ExpressionError(
@@ -104,14 +109,14 @@ def _term(m: Monomial, text: str) -> Term:
     sign = -1 if isinstance(m.shown, Negative) else 1
     shown = m.shown.operand if isinstance(m.shown, Negative) else m.shown
     turn = 0.0
-    seen = display_value(m.value)
+    seen = display_value(m.value.high)
     if shown is not None and abs(seen.real) <= 1e-15 * abs(seen.imag):
         found, rest = _without_i(shown)
         if found:
             # a factor i is displayed as a right angle
             shown, turn = rest, math.pi / 2
     return Term(
-        value=m.value,
+        value=m.value.high,
         magnitude=shown,
         sign=sign,
         turn=turn,
@@ -165,8 +170,7 @@ def _read_points(
             if state[name] == "open" and not missing:  # otherwise the other point is reported
                 monomials = reader.read(tree, text)
                 reader.points[name] = monomials
-                terms = tuple(_term(m, text) for m in monomials if is_structurally_nonzero(m.value))
-                done[spelling[name]] = PointPath(parent=None, terms=terms)
+                done[spelling[name]] = PointPath(parent=None, terms=_terms(monomials, text))
         except ExpressionError as error:
             if not any(p.key == ("points", spelling[name]) for p in problems):
                 problems.add(("points", spelling[name]), str(error))

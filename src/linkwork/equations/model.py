@@ -127,7 +127,8 @@ class LawEquation:
     """Σ weight · variable + constant - f(Σ weight · variable + offset) = 0; angles in radians.
 
     ``shown`` is the name of the function in printed equations, ``primes`` the order of its
-    derivative, ``meaning`` its description; ``kind`` of the residual: length or angle.
+    derivative, ``meaning`` its description; ``kind`` of the residual: length or angle. ``error``:
+    how far f may be from the function of the file.
     """
 
     label: str
@@ -140,6 +141,7 @@ class LawEquation:
     meaning: str = ""
     primes: int = 0
     kind: str = "length"
+    error: float = 0.0
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -2,13 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from itertools import accumulate
+from typing import Any
 
 import numpy as np
 
-from linkwork.foundation.arrays import Array, ComplexArray
+from linkwork.foundation.arrays import AnyArray, Array, ComplexArray
 from linkwork.foundation.elementwise import plain_value
+from linkwork.foundation.precise import PI, Precise
 from linkwork.kernels.piecewise import Piecewise
 
 __all__ = ["Outline", "spline"]
@@ -37,11 +40,13 @@ class Outline:
             area = (z.conj() * np.roll(z, -1)).imag.sum()
             z = z if area >= 0 else np.concatenate([z[:1], z[:0:-1]])
             z = np.append(z, z[0])
-        u = np.concatenate([[0.0], np.cumsum(np.abs(np.diff(z)))])
+        chords = abs(_differences(_exactly(z)))
+        sums = list(accumulate(map(Precise, chords.high, chords.low), initial=Precise(0.0)))
         if closed:
-            u = u * (2.0 * np.pi / u[-1])
-            # exactly, so that the period is one turn
-            u[-1] = 2.0 * np.pi
+            turn = PI * 2.0 / sums[-1]
+            # the last one exactly, so that the period is one turn
+            sums = [*(part * turn for part in sums[:-1]), PI * 2.0]
+        u = Precise(*np.array([(part.high, part.low) for part in sums]).T)
         return cls(x=spline(u, z.real, closed), y=spline(u, z.imag, closed))
 
     def at(self, u: Array) -> ComplexArray:
@@ -77,29 +82,47 @@ class Outline:
         return float(u[np.abs(self.at(u) - plain_value(point)).argmin()])
 
 
-def spline(u: Array, values: Array, closed: bool) -> Piecewise:
-    """The cubic spline with two continuous derivatives (de Boor, A Practical Guide to Splines)."""
-    h = np.diff(u)
-    chords = np.diff(values) / h
-    second = np.zeros(len(u))
-    if closed:
-        before = np.roll(h, 1)
-        right = 6.0 * (chords - np.roll(chords, 1))  # eq. (69)
-        second[:-1] = _solve_cyclic(before, 2.0 * (before + h), h, right)
-        second[-1] = second[0]
-    else:
-        right = 6.0 * np.diff(chords)[:, None]  # eq. (69)
-        second[1:-1] = _solve_tridiagonal(h[:-1], 2.0 * (h[:-1] + h[1:]), h[1:], right)[:, 0]
-    powers = np.stack(
-        [
-            values[:-1],
-            chords - h * (2.0 * second[:-1] + second[1:]) / 6.0,
-            second[:-1] / 2.0,
-            np.diff(second) / (6.0 * h),
-        ],
-        axis=1,
-    )
-    return Piecewise(breaks=u, powers=powers, sines=np.zeros((len(h), 3)), periodic=closed)
+def spline(u: Array | Precise, values: Array, closed: bool) -> Piecewise:
+    """The cubic spline with two continuous derivatives (de Boor, A Practical Guide to Splines).
+
+    Its coefficients are rounded once.
+    """
+    u = u if isinstance(u, Precise) else _exactly(u)
+    h = _differences(u)
+    chords = _differences(_exactly(values)) / h
+    low, high = (_each(h, np.roll, 1), h) if closed else (h.part(slice(-1)), h.part(slice(1, None)))
+    bent = chords - _each(chords, np.roll, 1) if closed else _differences(chords)
+    middle, ends = (low + high) * 2.0, (0, 1) if closed else (1, 1)
+    solve = _solve_cyclic if closed else _solve_open
+    second = _exactly(np.zeros(len(bent.high)))
+    for _ in range(2):  # once, and for what rounding has left
+        around = _each(second, np.pad, 1, "wrap" if closed else "constant")
+        before, after = around.part(slice(-2)), around.part(slice(2, None))
+        left = bent * 6.0 - (low * before + middle * second + high * after)  # eq. (69)
+        second = second + solve(low.high, middle.high, high.high, left.high)
+    second = _each(second, np.pad, ends, "wrap" if closed else "constant")
+    begin, end = second.part(slice(-1)), second.part(slice(1, None))
+    slope = chords - h * (begin * 2.0 + end) / 6.0
+    powers = [values[:-1], slope.high, begin.high / 2.0, ((end - begin) / (h * 6.0)).high]
+    none = np.zeros((len(powers[0]), 3))
+    return Piecewise(breaks=u.high, powers=np.stack(powers, axis=1), sines=none, periodic=closed)
+
+
+def _exactly(numbers: AnyArray) -> Precise:
+    return Precise(numbers, np.zeros_like(numbers))
+
+
+def _each(numbers: Precise, change: Callable[..., Any], *how: object) -> Precise:
+    """Both parts of numbers moved to other places."""
+    return Precise(change(numbers.high, *how), change(numbers.low, *how))
+
+
+def _differences(numbers: Precise) -> Precise:
+    return numbers.part(slice(1, None)) - numbers.part(slice(-1))
+
+
+def _solve_open(low: Array, middle: Array, high: Array, right: Array) -> Array:
+    return _solve_tridiagonal(low, middle, high, right[:, None])[:, 0]
 
 
 def _solve_tridiagonal(low: Array, middle: Array, high: Array, right: Array) -> Array:

@@ -10,6 +10,7 @@ from linkwork.equations.model import LawEquation, LinearEquation, LoopEquation, 
 from linkwork.foundation.arrays import ComplexArray
 from linkwork.foundation.elementwise import copysign, largest, uniform_value
 from linkwork.foundation.names import canonical
+from linkwork.foundation.precise import Precise
 from linkwork.mechanism.description import Key, Problems
 
 __all__ = ["PartRows"]
@@ -63,7 +64,7 @@ class PartRows:
         label: str,
         turns: list[tuple[str, float]],
         length: tuple[str, float] | None = None,
-        total: float | None = None,
+        total: Precise | None = None,
         measured: tuple[str, float] = ("", 1.0),
     ) -> None:
         """Add Σ weight · angle of body (+ weight · length) = total, by default as sketched.
@@ -74,21 +75,20 @@ class PartRows:
         weights, constant = frames.angles_of(
             (body, uniform_value(weight)) for body, weight in turns
         )
-        now = sum(weight * frames.sketched(name) for name, weight in weights.items())
         if length is not None:
             weights[length[0]] = length[1]
-            now += length[1] * frames.start[length[0]]
         # by default the total of the sketch: gears can mesh at any tooth
         kind = "angle" if length is None else "length"
         if total is None:
             quantity, weight = measured
-            self.measured.append(MeasuredInPart(label, quantity, (now + constant) / weight, kind))
-        constant = -now if total is None else constant - total
+            value = frames.sketched_sum(weights) + constant
+            self.measured.append(MeasuredInPart(label, quantity, value.high / weight, kind))
+        rounded = (-frames.sketched_sum(weights) if total is None else constant - total).high
         self.linear.append(
             LinearEquation(
                 label=label,
                 terms=tuple((canonical(name), weight) for name, weight in weights.items()),
-                constant=constant,
+                constant=rounded,
                 kind=kind,
             )
         )

@@ -11,18 +11,13 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 
 from linkwork.expression.grammar import CONSTANTS
+from linkwork.expression.precise_values import radians_of
 from linkwork.expression.tree import Binary, Call, Name, Negative, Node, Number, names_in
 from linkwork.expression.values import value
 from linkwork.foundation.angles import AngleUnit
-from linkwork.foundation.elementwise import (
-    cis,
-    display_value,
-    exponential,
-    finite,
-    uniform_value,
-    vector,
-)
+from linkwork.foundation.elementwise import display_value, exponential, finite, uniform_value
 from linkwork.foundation.errors import ExpressionError, choices
+from linkwork.foundation.precise import Precise, joined, sin_cos
 
 __all__ = ["Monomial", "PhasorReader"]
 
@@ -31,7 +26,7 @@ __all__ = ["Monomial", "PhasorReader"]
 class Monomial:
     """``value · Π factors · exp(i (Σ weight θ))``; ``shown`` is the constant as written."""
 
-    value: complex
+    value: Precise
     shown: Node | None = None
     factors: tuple[str, ...] = ()
     phase: tuple[tuple[str, float], ...] = ()
@@ -74,6 +69,8 @@ class PhasorReader:
     ----------
     numbers : Mapping[str, float]
         Dimensions by canonical name.
+    exact : Callable
+        The value of a formula of them, given the one that is rounded at every step.
     variables : Callable
         Whether a canonical name may be a variable.
     points : Mapping[str, sum of monomials]
@@ -81,6 +78,7 @@ class PhasorReader:
     """
 
     numbers: Mapping[str, float]
+    exact: Callable[[Node, float], Precise]
     unit: AngleUnit
     variables: Callable[[str], bool]
     points: dict[str, list[Monomial]] = field(default_factory=dict)
@@ -97,7 +95,8 @@ class PhasorReader:
         """
         self.text = text
         terms = _join_like_terms(self._sum(node))
-        if not all(finite(m.value.real) and finite(m.value.imag) for m in terms):
+        values = [m.value.high for m in terms]
+        if not all(finite(z.real) and finite(z.imag) for z in values):
             raise self._error(node, "a coefficient here is not a finite number")
         return terms
 
@@ -107,7 +106,7 @@ class PhasorReader:
     def _sum(self, node: Node) -> list[Monomial]:
         match node:
             case Number():
-                return [Monomial(complex(node.value), None if node.value == 1 else node)]
+                return [Monomial(Precise(complex(node.value)), None if node.value == 1 else node)]
             case Name():
                 return self._name(node)
             case Negative():
@@ -126,7 +125,8 @@ class PhasorReader:
                 return self._exponential(node, node.arguments[0])
             case Call("cis"):
                 turned = [
-                    m.times(Monomial(1j, Name("i", "i"))) for m in self._sum(node.arguments[0])
+                    m.times(Monomial(Precise(1j), Name("i", "i")))
+                    for m in self._sum(node.arguments[0])
                 ]
                 return self._rotation(node, turned, node.arguments[0])
             case Call():
@@ -134,20 +134,24 @@ class PhasorReader:
 
     def _name(self, node: Name) -> list[Monomial]:
         if node.name in self.numbers:
-            return [Monomial(vector(self.numbers[node.name], 0.0), node)]
+            return [self._known(node, self.numbers[node.name])]
         if node.name in self.points:
             return self.points[node.name]
         if self.variables(node.name):
-            return [Monomial(1.0 + 0j, None, (node.name,))]
+            return [Monomial(Precise(1.0 + 0j), None, (node.name,))]
         if node.name == "i":
-            return [Monomial(1j, node)]
+            return [Monomial(Precise(1j), node)]
         if node.name in CONSTANTS:
-            return [Monomial(complex(CONSTANTS[node.name]), node)]
+            return [self._known(node, CONSTANTS[node.name])]
         raise self._error(
             node,
             f'"{node.spelling}" is neither a dimension nor in [guess] '
             f"{choices('names', self.known, node.name)}",
         )
+
+    def _known(self, node: Node, number: float) -> Monomial:
+        """A formula of dimensions, whose value is known."""
+        return Monomial(joined(self.exact(node, number), Precise(0.0)), node)
 
     def _multiply(self, node: Binary) -> list[Monomial]:
         left, right = self._sum(node.left), self._sum(node.right)
@@ -165,8 +169,8 @@ class PhasorReader:
         right = self._sum(node.right)
         if not all(m.constant for m in right):
             raise self._error(node, "a loop equation cannot be divided by an unknown")
-        divisor = sum(m.value for m in right)
-        if divisor == 0:
+        divisor = _total(right)
+        if divisor.high == 0:
             raise self._error(node, "division by zero")
         return [
             Monomial(
@@ -188,17 +192,19 @@ class PhasorReader:
                 "a loop equation cannot contain a power of an unknown: "
                 "write products of one length and e^(i*angle), or use [equations]",
             )
-        b, p = sum(m.value for m in base), sum(m.value for m in exponent)
+        b, p = _total(base).high, _total(exponent).high
         try:
-            return [Monomial(b**p + 0j, node)]
+            power = b**p + 0j
         except (ZeroDivisionError, OverflowError):
             raise self._error(node, "this power is not a finite number") from None
+        real = b.imag == 0 and p.imag == 0 and power.imag == 0
+        return [self._known(node, power.real) if real else Monomial(Precise(power), node)]
 
     def _exponential(self, node: Node, exponent: Node) -> list[Monomial]:
         terms = _join_like_terms(self._sum(exponent))
-        if all(m.constant and m.value.imag == 0 for m in terms):
+        if all(m.constant and m.value.high.imag == 0 for m in terms):
             try:
-                return [Monomial(exponential(sum(m.value for m in terms)), node)]
+                return [self._known(node, exponential(_total(terms).high).real)]
             except OverflowError:
                 raise self._error(node, "this power is not a finite number") from None
         return self._rotation(node, terms, exponent)
@@ -211,27 +217,29 @@ class PhasorReader:
                 'angles are in degrees here: write 180 instead of pi, or set angle = "rad"',
             )
         weights: dict[str, float] = {}
-        turn = 0.0
+        turn = Precise(0.0)
         for m in terms:
             if len(m.factors) > 1 or m.phase:
                 raise self._error(node, "an exponent takes i times a sum of angles, nothing else")
-            if m.value.real != 0.0:
+            if m.value.high.real != 0.0:
                 raise self._error(
                     node, "the exponent has a part without i: a rotation is e^(i*angle)"
                 )
             if m.factors:
-                weight = uniform_value(m.value.imag)
+                weight = uniform_value(m.value.high.imag)
                 weights[m.factors[0]] = weights.get(m.factors[0], 0.0) + weight
             else:
-                turn += m.value.imag * self.unit.radians
+                turn = turn + m.value.imag * radians_of(self.unit)
         phase = tuple((name, weight) for name, weight in weights.items() if weight)
+        sine, cosine = sin_cos(turn)
+        direction = joined(cosine, sine)
         if not phase:
-            return [Monomial(cis(turn), node)]
-        if turn == 0.0:
-            return [Monomial(1.0 + 0j, None, (), phase)]
-        angle = display_value(turn).real / self.unit.radians
+            return [Monomial(direction, node)]
+        if turn.high == 0.0:
+            return [Monomial(Precise(1.0 + 0j), None, (), phase)]
+        angle = display_value(turn.high).real / self.unit.radians
         constant = Binary("^", Name("e", "e"), Binary("*", Name("i", "i"), Number(angle)))
-        return [Monomial(cis(turn), constant, (), phase)]
+        return [Monomial(direction, constant, (), phase)]
 
     def _function(self, node: Call) -> list[Monomial]:
         for used in names_in(node):
@@ -242,7 +250,11 @@ class PhasorReader:
                     f"{used.spelling}: write e^(i*{used.spelling}), or use [equations]",
                 )
         number = value(node, self.numbers, self.unit, self.text)
-        return [Monomial(vector(number, 0.0), node)]
+        return [self._known(node, number)]
+
+
+def _total(terms: list[Monomial]) -> Precise:
+    return sum((m.value for m in terms), Precise(0j))
 
 
 def _negate(m: Monomial) -> Monomial:
@@ -257,7 +269,7 @@ def _negate(m: Monomial) -> Monomial:
 
 def _whole(terms: list[Monomial], node: Node) -> Monomial:
     """A constant sum, kept as written."""
-    return Monomial(sum(m.value for m in terms), node)
+    return Monomial(_total(terms), node)
 
 
 def _join_like_terms(terms: list[Monomial]) -> list[Monomial]:

@@ -1,10 +1,11 @@
 """Overloaded operators: ``a * b + 2`` is computed by the arithmetic of the operands.
 
 :class:`Operand` is the only class of the package with operators. They call an
-:class:`Arithmetic`, of which there are six: numbers of many designs
-(:mod:`~linkwork.foundation.lanes`), values with two derivatives (:mod:`linkwork.expression.jets`),
-formulas of cells, numbers with such formulas (both in ``linkwork.export.workbook``), and programs
-for kernels (``linkwork.kernels.program.recorder``, and ``complex_recorder`` for complex numbers).
+:class:`Arithmetic`, of which there are seven: numbers of many designs
+(:mod:`~linkwork.foundation.lanes`), numbers of 32 digits (``precise``), values with two
+derivatives (:mod:`linkwork.expression.jets`), formulas of cells, numbers with such formulas (both
+in ``linkwork.export.workbook``), and programs for kernels (``linkwork.kernels.program.recorder``,
+and ``complex_recorder`` for complex numbers).
 """
 
 from __future__ import annotations

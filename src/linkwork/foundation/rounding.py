@@ -12,6 +12,7 @@ __all__ = [
     "EQUAL_ROWS",
     "EXTENDED_EPSILON",
     "LARGEST_POLISH",
+    "PRINTED_ANGLE",
     "PROOF_SLACK",
     "RANK_TOLERANCE",
     "REGULAR_CONDITION",
@@ -25,6 +26,9 @@ EPSILON = float(np.finfo(float).eps)
 EXTENDED_EPSILON = float(np.finfo(np.longdouble).eps)
 #: The largest relative error of one rounded operation, 2⁻⁵³.
 UNIT_ROUNDOFF = EPSILON / 2.0
+#: Of an angle: how far it may be off when it is printed in degrees. A link's constant is added, the
+#: float of π/180 is rounded, the quotient, and the angle without its whole turns.
+PRINTED_ANGLE = 4.0 * UNIT_ROUNDOFF
 #: A factor that covers the rounding of a proof's own bounds, which are sums of positive numbers.
 PROOF_SLACK = 1.0 + 1e-12
 

@@ -36,7 +36,7 @@ class Curvature:
     pair p of a variable length and a phase. ``weights`` (N, G): |W|. ``pair_length``,
     ``pair_group`` (P,): the pair's variable and phase. ``rounding`` (B, m): bounds of the error of
     computing F. ``jacobian_rounding`` (B, m, N): of computing dF/dv and its products with m numbers
-    of size 1.
+    of size 1. ``printing`` (B, n): of printing the unknowns.
     """
 
     loop_rows: int
@@ -48,6 +48,7 @@ class Curvature:
     pair_group: IndexArray
     rounding: Array
     jacobian_rounding: Array
+    printing: Array
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -70,7 +71,8 @@ class PhaseGroups:
             for k, w in column:
                 weights[k, g] += abs(w)
         roundings = [
-            0 if len(column) < 2 and all(_doubles(w) for _, w in column) else len(column)
+            # every product, and the weights themselves
+            0 if len(column) < 2 and all(_doubles(w) for _, w in column) else len(column) + 1
             for column in number
         ]
         return weights, np.array(group, dtype=np.intp), np.array(roundings, dtype=np.intp)

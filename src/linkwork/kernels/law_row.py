@@ -30,6 +30,8 @@ class LawRow:
     law : Piecewise
     inner, offset
         w (k,) and the offset of the function's argument.
+    error
+        How far the function may be from the one that it stands for.
     """
 
     variables: tuple[int, ...]
@@ -38,6 +40,7 @@ class LawRow:
     law: Piecewise
     inner: Array
     offset: float
+    error: float = 0.0
 
     def moved(self, new_index: dict[int, int]) -> LawRow:
         """The same row over renumbered variables."""
@@ -99,6 +102,9 @@ class LawRow:
         straight = np.abs(x) @ np.abs(self.weights) + abs(self.constant)
         steepest = np.abs(self.law.jet(self._argument(v))[1]) + self.law.bend * moved
         size = np.abs(self.law(self._argument(v)))
+        # polynomials of degree five that are off by so much have slopes off by 50 of it a piece
+        slope = slope + 50.0 * self.error * len(self.law.powers) / self.law.period
+        value = value + self.error
         error = value + steepest * moved + UNIT_ROUNDOFF * (count * straight + 2.0 * size)
         slopes = (slope + self.law.bend * moved + 2.0 * UNIT_ROUNDOFF * steepest)[:, None] * np.abs(
             self.inner

@@ -13,7 +13,7 @@ from functools import cached_property
 import numpy as np
 
 from linkwork.foundation.arrays import Array, BoolArray
-from linkwork.foundation.rounding import UNIT_ROUNDOFF
+from linkwork.foundation.rounding import PRINTED_ANGLE, UNIT_ROUNDOFF
 from linkwork.kernels.curvature import Curvature, PhaseGroups
 from linkwork.kernels.exact_rows import exact_line, exact_rows
 from linkwork.kernels.law_row import TURN_ROUNDING, LawRow
@@ -43,6 +43,8 @@ class LoopTable:
         Weight of each variable: 1 for angles, a length of the mechanism for lengths.
     is_angle : (N,) bool
         Which variables are angles.
+    link_constant : (N,), optional
+        No smaller than the constants of links that turn with each variable [rad].
     """
 
     unknowns: int
@@ -52,6 +54,7 @@ class LoopTable:
     equation_scale: Array
     variable_scale: Array
     is_angle: BoolArray
+    link_constant: Array | None = None
 
     @property
     def variables(self) -> int:
@@ -70,11 +73,18 @@ class LoopTable:
         sizes = np.array([self.unknowns, self.variables, loops.rows, len(lines.constant)])
         of_loops = [loops.row, loops.length, loops.phase_term, loops.phase_variable]
         of_lines = [lines.row, lines.variable, lines.weight]
-        parts = [sizes, *of_loops, loops.phase_weight, *of_lines, self.is_angle]
+        printed = [self.is_angle, np.asarray(self.printed_constant)]
+        parts = [sizes, *of_loops, loops.phase_weight, *of_lines, *printed]
         digest = hashlib.sha256()
         for part in parts:
             digest.update(f"{part.dtype} {part.shape} ".encode() + part.tobytes())
         return digest.digest()
+
+    @cached_property
+    def printed_constant(self) -> list[float]:
+        """The largest constant printed with each variable, NaN for lengths: N numbers."""
+        constant = np.zeros(self.variables) if self.link_constant is None else self.link_constant
+        return list(np.where(self.is_angle, constant, np.nan).tolist())
 
     @cached_property
     def _linear_matrix(self) -> Array:
@@ -182,7 +192,9 @@ class LoopTable:
         """The equations at one position at a time; ``None`` with rows of any formula."""
         if not self.has_curvature_bound:
             return None
-        own = SinglePosition(self._groups, self.linear, self.unknowns)
+        own = SinglePosition(
+            self._groups, self.linear, self.unknowns, self.printed_constant[: self.unknowns]
+        )
         return SingleWithLaws(own, self._bounded, self.curvature) if self.functions else own
 
     @property
@@ -250,7 +262,7 @@ class LoopTable:
         error, slopes = groups.rounding(v, self.equations)
         a = np.abs(self._linear_matrix)
         line_error = (np.abs(v) @ a.T + np.abs(self.linear.constant)) * (
-            UNIT_ROUNDOFF * (self.variables + 2)
+            UNIT_ROUNDOFF * (self.variables + 3)
         )
         lines = np.broadcast_to(UNIT_ROUNDOFF * (self.equations + 4) * a, (len(v), *a.shape))
         lengths, group, _ = groups.pairs
@@ -264,6 +276,8 @@ class LoopTable:
             pair_group=group,
             rounding=np.concatenate([error, error, line_error], axis=1),
             jacobian_rounding=np.concatenate([slopes, slopes, lines], axis=1),
+            printing=PRINTED_ANGLE
+            * np.nan_to_num(np.abs(v) + np.array(self.printed_constant))[:, : self.unknowns],
         )
         return self._with_laws(found, v, matrix) if self.functions else found
 

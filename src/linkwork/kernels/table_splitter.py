@@ -50,6 +50,7 @@ class TableSplitter:
             equation_scale=whole.equation_scale[np.array(real, dtype=np.intp)],
             variable_scale=whole.variable_scale[order],
             is_angle=whole.is_angle[order],
+            link_constant=None if whole.link_constant is None else whole.link_constant[order],
         )
         return part, known
 

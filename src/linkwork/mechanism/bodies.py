@@ -3,13 +3,20 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
-from typing import TypeVar
+from typing import Any, TypeVar
 
-from linkwork.foundation.elementwise import estimated, phase, plain_value, sqrt, vector
+from linkwork.foundation.elementwise import choose, estimated, phase, plain_value, sqrt, vector
 from linkwork.foundation.frozen import FrozenDict
 from linkwork.foundation.names import GROUND
+from linkwork.foundation.precise import (
+    Precise,
+    joined,
+    phase as direction_of,
+    precise,
+    sqrt as root_of,
+)
 from linkwork.mechanism.dimensions import Number
 from linkwork.mechanism.loaded import LoadedBodies
 
@@ -17,6 +24,7 @@ __all__ = ["Bodies", "Measured", "Shapes"]
 
 
 P = TypeVar("P")
+_HALF_TURN = -math.pi + 1e-12  # [rad]
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -38,6 +46,17 @@ class Shapes:
 
     local: Mapping[str, Mapping[str, complex]] = field(default_factory=dict)
     measured: tuple[Measured, ...] = ()
+    #: What ``local`` loses where it is rounded to floats.
+    rest: Mapping[str, Mapping[str, complex]] = field(default_factory=dict)
+
+    def place(self, link: str, point: str) -> Precise:
+        """The coordinates of a point in its link."""
+        return Precise(self.local[link][point], self.rest[link][point])
+
+    def direction(self, link: str, line: tuple[str, str]) -> Precise:
+        """The unit vector from the first to the second point of a line."""
+        span = self.place(link, line[1]) - self.place(link, line[0])
+        return span / abs(span)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -78,6 +97,11 @@ class Bodies(LoadedBodies):
         x, y = self.points[point]
         return vector(self.numbers(x), self.numbers(y))
 
+    def precisely_sketched(self, point: str) -> Precise:
+        """:meth:`sketched`, as exact as the formulas of coordinates."""
+        x, y = map(self.numbers.precise, self.points[point])
+        return joined(x, y)
+
     def side_of(self, line: tuple[str, str], point: str) -> float:
         """The side of a line on which a point is sketched: 1 for left, -1 for right."""
         start, end, place = map(self.sketched, (*line, point))
@@ -89,9 +113,16 @@ class Bodies(LoadedBodies):
             if point in points:
                 yield link
 
-    def sketched_angle(self, link: str) -> float:
-        """The angle of a link in the sketch [rad]; 0 for ground and wheels of one point."""
-        return 0.0 if link == GROUND else phase(self.sketched_span(link))
+    def sketched_angle(self, link: str, *, of_start: bool = False) -> float:
+        """The angle of a link in the sketch [rad]; 0 for ground and wheels of one point.
+
+        ``of_start``: for estimates, without formulas.
+        """
+        if link == GROUND:
+            return 0.0
+        angle = phase(self.sketched_span(link, of_start=of_start))
+        # half a turn is positive, whichever way it is rounded
+        return choose(angle < _HALF_TURN, angle + math.tau, angle)
 
     def sketched_span(self, link: str, *, of_start: bool = False) -> complex:
         """A vector in the direction of a link in the sketch, longer for larger links.
@@ -100,16 +131,35 @@ class Bodies(LoadedBodies):
         ones, whichever of them is the first. 1 for a wheel of one point. ``of_start``: for
         estimates, without formulas.
         """
-        points = self.links[link]
-        sketched = [self.sketched(point) for point in points]
+        sketched = [self.sketched(point) for point in self.links[link]]
         local = self.shapes.local.get(link)
-        if len(points) == 1:
-            return 1.0 + 0j
-        if len(points) == 2 or local is None:
-            return sketched[1] - sketched[0]
-        exact = [estimated(local[point]) if of_start else local[point] for point in points]
-        middle, center = (sum(places) / len(points) for places in (sketched, exact))
-        size = sqrt(2.0 * sum(abs(place - center) ** 2 for place in exact))
-        pairs = zip(sketched, exact, strict=True)
-        total = sum(((z - middle) * (place - center).conjugate() for z, place in pairs), 0j)
-        return total / size
+        if of_start and local is not None:
+            local = {point: estimated(place) for point, place in local.items()}
+        span: complex = _span(sketched, local, sqrt)
+        return span
+
+    def exact_angle(self, link: str) -> Precise:
+        """:meth:`sketched_angle`, as exact as the formulas of coordinates."""
+        return Precise(0.0) if link == GROUND else direction_of(self.exact_span(link))
+
+    def exact_span(self, link: str) -> Precise:
+        """:meth:`sketched_span`, as exact as the formulas of coordinates."""
+        sketched = [self.precisely_sketched(point) for point in self.links[link]]
+        places = {point: self.shapes.place(link, point) for point in self.shapes.local[link]}
+        return precise(_span(sketched, places, root_of))
+
+
+def _span(
+    sketched: Sequence[Any], local: Mapping[str, Any] | None, root: Callable[..., Any]
+) -> Any:
+    """The span of a link from its points in the sketch and in its frame."""
+    if len(sketched) == 1:
+        return 1.0 + 0j
+    if len(sketched) == 2 or local is None:
+        return sketched[1] - sketched[0]
+    count = float(len(sketched))
+    middle, center = (sum(places) / count for places in (sketched, local.values()))
+    exact = [place - center for place in local.values()]
+    size = root(2.0 * sum((place * place.conjugate()).real for place in exact))
+    pairs = zip(sketched, exact, strict=True)
+    return sum(((z - middle) * place.conjugate() for z, place in pairs), 0j) / size

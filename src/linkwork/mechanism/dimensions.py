@@ -7,7 +7,8 @@ from collections.abc import Callable, Iterable, Mapping
 from typing import cast
 
 from linkwork.expression.grammar import CONSTANTS, parse
-from linkwork.expression.tree import Name, names_in
+from linkwork.expression.precise_values import precise_value, radians_of
+from linkwork.expression.tree import Name, Node, names_in
 from linkwork.expression.values import value
 from linkwork.foundation.angles import AngleUnit
 from linkwork.foundation.elementwise import finite
@@ -15,6 +16,7 @@ from linkwork.foundation.errors import ExpressionError, choices
 from linkwork.foundation.lanes import is_batched
 from linkwork.foundation.names import canonical
 from linkwork.foundation.plain_numbers import as_told, plain_number
+from linkwork.foundation.precise import Precise, chosen
 
 __all__ = ["LARGEST", "Number", "Numbers"]
 
@@ -42,7 +44,8 @@ class Numbers:
         self.spelling = {canonical(name): name for name in dimensions}
         self.known: dict[str, float] = {}
         self.wrong: dict[str, str] = {}
-        given = {canonical(name): number for name, number in dimensions.items()}
+        self._given = given = {canonical(name): number for name, number in dimensions.items()}
+        self._precise: dict[str, Precise] = {}
         for name in given:
             self._resolve(name, given, [])
 
@@ -64,6 +67,31 @@ class Numbers:
             shown = as_told(number if plain is None else plain)
             raise ExpressionError(f"must be a finite number, got {shown}", shown, 1)
         return plain
+
+    def precise(self, number: Number) -> Precise:
+        """The value as exact as formulas give it: plain numbers are those of the file."""
+        if not isinstance(number, str):
+            return Precise(self(number))
+        return self.precise_tree(parse(number), self(number))
+
+    def precise_tree(self, tree: Node, value: float) -> Precise:
+        """The same of a formula that has a value."""
+        rounded = Precise(value)
+        if not rounded.has_rest:
+            return rounded
+        for node in names_in(tree):
+            if node.name in self.known and node.name not in self._precise:
+                self._precise[node.name] = self.precise(self._given[node.name])
+        try:
+            found = precise_value(tree, self._precise, self.unit)
+        except (ArithmeticError, ValueError, KeyError):  # at the end of a domain, or complex
+            return rounded
+        # NaN likewise
+        return chosen(found.low - found.low == 0.0, found, rounded)
+
+    def precise_angle(self, number: Number) -> Precise:
+        """The value of an angle [rad]."""
+        return self.precise(number) * radians_of(self.unit)
 
     def check(self, report: Report) -> None:
         """Report every dimension that has no value."""

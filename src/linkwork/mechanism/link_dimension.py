@@ -8,6 +8,7 @@ from dataclasses import dataclass, replace
 
 from linkwork.foundation.elementwise import cis, degrees, detached, is_steady, phase
 from linkwork.foundation.lanes import Rest
+from linkwork.foundation.precise import Precise, sin_cos
 
 __all__ = ["AGREE", "Distance", "Given", "ShapeError", "VertexAngle"]
 
@@ -26,11 +27,12 @@ class ShapeError(Exception):
 
 @dataclass(frozen=True)
 class Distance:
-    """|ab| = length."""
+    """|ab| = length + rest: the part that is lost where the length is rounded to a float."""
 
     a: str
     b: str
     length: float
+    rest: float = 0.0
     table = "lengths"
 
     @property
@@ -48,6 +50,12 @@ class Distance:
     def error(self, z: Mapping[str, complex]) -> float:
         """Relative disagreement with placed points."""
         return (abs(z[self.b] - z[self.a]) - self.length) / self.length
+
+    def precise_error(self, z: Mapping[str, Precise]) -> Precise:
+        """The error near a shape that has none."""
+        span, length = z[self.b] - z[self.a], Precise(self.length, self.rest)
+        square = span.real * span.real + span.imag * span.imag
+        return (square / (length * length) - 1.0) * 0.5
 
     def agrees(self, z: Mapping[str, complex], tolerance: float) -> bool:
         error = self.error(z)
@@ -73,7 +81,7 @@ class Distance:
         return {self.a: -slope, self.b: slope}
 
     def narrow(self, rest: Rest) -> Distance:
-        return replace(self, length=rest.narrow(self.length))
+        return replace(self, length=rest.narrow(self.length), rest=rest.narrow(self.rest))
 
     def detached(self) -> Distance:
         length = detached(self.length)
@@ -82,12 +90,16 @@ class Distance:
 
 @dataclass(frozen=True)
 class VertexAngle:
-    """The angle [rad] at ``vertex``, counter-clockwise from the ray to ``a`` to that to ``b``."""
+    """The angle [rad] at ``vertex``, counter-clockwise from the ray to ``a`` to that to ``b``.
+
+    It is ``angle`` + ``rest``.
+    """
 
     a: str
     vertex: str
     b: str
     angle: float
+    rest: float = 0.0
     table = "angles"
 
     @property
@@ -107,6 +119,12 @@ class VertexAngle:
         rays = (z[self.b] - z[self.vertex]) * (z[self.a] - z[self.vertex]).conjugate()
         # the difference as a rotation has no jump at half a turn
         return phase(rays * cis(-self.angle)) if rays else math.inf
+
+    def precise_error(self, z: Mapping[str, Precise]) -> Precise:
+        """The error near a shape that has none [rad]."""
+        rays = (z[self.b] - z[self.vertex]) * (z[self.a] - z[self.vertex]).conjugate()
+        sine, cosine = sin_cos(Precise(self.angle, self.rest))
+        return (rays.imag * cosine - rays.real * sine) / abs(rays)
 
     def agrees(self, z: Mapping[str, complex], tolerance: float) -> bool:
         error = self.error(z)
@@ -137,7 +155,7 @@ class VertexAngle:
         return {self.a: to_a, self.vertex: -(to_a + to_b), self.b: to_b}
 
     def narrow(self, rest: Rest) -> VertexAngle:
-        return replace(self, angle=rest.narrow(self.angle))
+        return replace(self, angle=rest.narrow(self.angle), rest=rest.narrow(self.rest))
 
     def detached(self) -> VertexAngle:
         angle = detached(self.angle)

@@ -8,26 +8,27 @@ from itertools import combinations
 
 import numpy as np
 
-from linkwork.foundation.elementwise import (
-    choose,
-    largest,
-    phase,
-    rect,
-    sqrt,
-    vector,
-)
+from linkwork.foundation.elementwise import largest, smallest
+from linkwork.foundation.precise import Precise, chosen, joined, precise, sin_cos, sqrt
+from linkwork.foundation.rounding import UNIT_ROUNDOFF
 from linkwork.mechanism.link_dimension import AGREE, Distance, Given, ShapeError, VertexAngle
 from linkwork.mechanism.nearest_shape import nearest_shape
 
 __all__ = ["LinkShape", "ShapeError", "place"]
 
+_IN_LINE = 2.0 * UNIT_ROUNDOFF  # of three sides: decimals in line may not be so as floats
+
 
 @dataclass(frozen=True)
 class LinkShape:
-    """Local coordinates, real axis from the first to the second point, and measured dimensions."""
+    """Local coordinates, real axis from the first to the second point, and measured dimensions.
+
+    ``rest``: what the coordinates lose where they are rounded to floats.
+    """
 
     local: Mapping[str, complex]
     measured: tuple[Distance, ...] = ()
+    rest: Mapping[str, complex] = field(default_factory=dict)
 
 
 @dataclass
@@ -35,10 +36,11 @@ class _Placing:
     """The state of placing points one by one."""
 
     points: tuple[str, ...]
-    sketch: Mapping[str, complex]
-    distances: dict[frozenset[str], float]
+    sketch: Mapping[str, Precise]
+    distances: dict[frozenset[str], Precise]
     vertices: Sequence[VertexAngle]
-    z: dict[str, complex] = field(default_factory=dict)
+    measured: Sequence[Distance] = ()
+    z: dict[str, Precise] = field(default_factory=dict)
 
     def place_all(self) -> bool:
         """Place all points by given dimensions, from the first distance that leads to all."""
@@ -47,22 +49,23 @@ class _Placing:
         first = frozenset(self.points[:2])
         for pair in sorted(self.distances, key=lambda pair: (pair != first, pair not in rays)):
             a, b = sorted(pair, key=self.points.index)
-            self.z = {a: 0j, b: self.distances[pair] + 0j}
+            self.z = {a: Precise(0j), b: self.distances[pair] + 0j}
             while self.place_next():
                 pass
             if len(self.z) == len(self.points):
                 return True
         return False
 
-    def direction(self, point: str) -> tuple[str, float] | None:
-        """A placed vertex and the given direction from it to ``point``."""
+    def direction(self, point: str) -> tuple[str, Precise] | None:
+        """A placed vertex and the given direction from it to ``point``, a unit vector."""
         for v in self.vertices:
-            if v.vertex not in self.z:
+            other = v.a if v.b == point else v.b
+            if point not in (v.a, v.b) or not {v.vertex, other} <= self.z.keys():
                 continue
-            if v.b == point and v.a in self.z:
-                return v.vertex, phase(self.z[v.a] - self.z[v.vertex]) + v.angle
-            if v.a == point and v.b in self.z:
-                return v.vertex, phase(self.z[v.b] - self.z[v.vertex]) - v.angle
+            ray = self.z[other] - self.z[v.vertex]
+            sine, cosine = sin_cos(Precise(v.angle, v.rest))
+            turn = joined(cosine, sine if v.b == point else -sine)
+            return v.vertex, turn * (ray / abs(ray))
         return None
 
     def place_next(self) -> bool:
@@ -76,7 +79,7 @@ class _Placing:
                 vertex, direction = seen
                 length = self.distances.get(frozenset((vertex, point)))
                 if length is not None:
-                    self.z[point] = self.z[vertex] + rect(length, direction)
+                    self.z[point] = self.z[vertex] + direction * length
                 else:
                     self.z[point] = self.on_ray(point, vertex, direction, centres[0])
                 return True
@@ -86,54 +89,57 @@ class _Placing:
                 return True
         return False
 
-    def on_ray(self, point: str, vertex: str, direction: float, centre: str) -> complex:
+    def on_ray(self, point: str, vertex: str, direction: Precise, centre: str) -> Precise:
         """Where a ray from a vertex meets a circle, at the distance nearest to the sketched one."""
         radius = self.distances[frozenset((centre, point))]
-        seen = (self.z[centre] - self.z[vertex]) * rect(1.0, -direction)
-        square = radius * radius - seen.imag * seen.imag
-        if square < -AGREE * radius * radius:
+        seen = (self.z[centre] - self.z[vertex]) * direction.conjugate()
+        square, size = (radius - seen.imag) * (radius + seen.imag), radius.high * radius.high
+        if square.high < -AGREE * size:
             raise ShapeError(
-                f"no triangle has |{centre}{point}| = {radius:.12g} and this angle at {vertex}, "
-                f"{abs(seen):.12g} away from {centre}"
+                f"no triangle has |{centre}{point}| = {radius.high:.12g} and this angle at "
+                f"{vertex}, {abs(seen).high:.12g} away from {centre}"
             )
         # a ray that touches the circle: rounding must not part the two places
-        half = sqrt(choose(square > 1e-14 * radius * radius, square, 0.0))
+        half = sqrt(chosen(square.high > _IN_LINE * size, square, Precise(0.0)))
         near, far = seen.real - half, seen.real + half
-        sketched = abs(self.sketch[point] - self.sketch[vertex])
-        length = choose(abs(near - sketched) < abs(far - sketched), near, far)
-        return self.z[vertex] + rect(length, direction)
+        sketched = abs(self.sketch[point] - self.sketch[vertex]).high
+        length = chosen(abs(near.high - sketched) < abs(far.high - sketched), near, far)
+        return self.z[vertex] + direction * length
 
-    def trilaterated(self, point: str, first: str, second: str) -> complex:
+    def trilaterated(self, point: str, first: str, second: str) -> Precise:
         """The intersection of two circles, on the side of the sketch."""
         r1, r2 = (self.distances[frozenset((centre, point))] for centre in (first, second))
         base = self.z[second] - self.z[first]
+        seen = [self.sketch[q] - self.sketch[first] for q in (point, second)]
+        triangle = {frozenset(pair) for pair in combinations((first, second, point), 2)}
+        if triangle <= {frozenset(d.points) for d in self.measured}:
+            return self.z[first] + seen[0] / seen[1] * base
         d = abs(base)
-        if d <= AGREE * largest((r1, r2)):
+        if d.high <= AGREE * largest((r1.high, r2.high)):
             raise ShapeError(
                 f"{first} and {second} are at the same place: "
                 f"{point} cannot be placed by its distances from both"
             )
         # law of cosines
-        x = (r1 * r1 - r2 * r2 + d * d) / (2.0 * d)
+        both, gap = r1 + r2, r1 - r2
+        x = (both * gap / d + d) / 2.0
         square = r1 * r1 - x * x
-        size = largest((r1, r2, d)) ** 2
-        if square < -AGREE * size:
+        size = largest((r1.high, r2.high, d.high)) ** 2
+        if square.high < -AGREE * size:
             raise ShapeError(
-                f"no triangle has |{first}{second}| = {d:.12g}, |{first}{point}| = {r1:.12g} "
-                f"and |{second}{point}| = {r2:.12g}"
+                f"no triangle has |{first}{second}| = {d.high:.12g}, "
+                f"|{first}{point}| = {r1.high:.12g} and |{second}{point}| = {r2.high:.12g}"
             )
-        # three points in line: rounding must not push the third off the line
-        y = sqrt(choose(square > 1e-14 * size, square, 0.0))
-        sketched = (self.sketch[point] - self.sketch[first]) * (
-            self.sketch[second] - self.sketch[first]
-        ).conjugate()
-        y = choose(sketched.imag < 0, -y, y)
-        return self.z[first] + vector(x, y) * base / d
+        # sides in line to the rounding of their numbers: it must not push the point off the line
+        slack = smallest([(both - d).high, (d - abs(gap)).high])
+        y = sqrt(chosen(slack > _IN_LINE * (both + d).high, square, Precise(0.0)))
+        y = chosen((seen[0] * seen[1].conjugate()).imag.high < 0, -y, y)
+        return self.z[first] + joined(x, y) * (base / d)
 
 
 def place(
     points: tuple[str, ...],
-    sketch: Mapping[str, complex],
+    sketch: Mapping[str, complex | Precise],
     distances: Sequence[Distance],
     vertices: Sequence[VertexAngle],
 ) -> LinkShape:
@@ -162,11 +168,12 @@ def place(
     Points are placed one by one if possible; otherwise Gauss-Newton solves all dimensions together.
     """
     if len(points) == 1:
-        return LinkShape({points[0]: 0j})
+        return LinkShape({points[0]: 0j}, rest={points[0]: 0j})
+    seen = {p: precise(place) for p, place in sketch.items()}
     given: list[Given] = [*distances, *vertices]
     # n points have 2n coordinates; a link may still be moved and turned, 3 freedoms
     lacks = 2 * len(points) - 3 - len(given)
-    measured = _measurable(points, sketch, given) if lacks > 0 else []
+    measured = _measurable(points, seen, given) if lacks > 0 else []
     if len(measured) != lacks:
         measured = []
     for d in measured:
@@ -174,27 +181,27 @@ def place(
             raise ShapeError(
                 f"{d.a} and {d.b} are sketched at the same place: give {d.key} a length"
             )
-    known = {frozenset(d.points): d.length for d in (*distances, *measured)}
-    state = _Placing(points, sketch, known, vertices)
+    known = {frozenset(d.points): Precise(d.length, d.rest) for d in (*distances, *measured)}
+    state = _Placing(points, seen, known, vertices, measured)
+    rounded: dict[str, complex] = {}
     if (lacks <= 0 or measured) and state.place_all():
-        if all(g.agrees(state.z, AGREE) for g in given):
-            return LinkShape(_upright(state.z, points), tuple(measured))
-    else:
-        state.z = {}
+        rounded = {p: place.high for p, place in state.z.items()}
+        if all(g.agrees(rounded, AGREE) for g in given):
+            return _upright(state.z, points, measured)
     try:
         with np.errstate(all="ignore"):  # overflow counts as disagreement and is reported
-            z, more = nearest_shape(points, sketch, [*given, *measured])
+            z, more = nearest_shape(points, seen, [*given, *measured])
     except (np.linalg.LinAlgError, ShapeError) as error:
-        if lacks < 0 and state.z:
-            raise _contradiction(given, state.z, points) from None
+        if lacks < 0 and rounded:
+            raise _contradiction(given, rounded, points) from None
         if isinstance(error, ShapeError):
             raise
         raise ShapeError("no link has these dimensions near the sketch") from None
-    return LinkShape(_upright(z, points), (*measured, *more))
+    return _upright(z, points, [*measured, *more])
 
 
 def _measurable(
-    points: tuple[str, ...], sketch: Mapping[str, complex], given: Sequence[Given]
+    points: tuple[str, ...], sketch: Mapping[str, Precise], given: Sequence[Given]
 ) -> list[Distance]:
     """The distances in the sketch that are not given, nor across from a given angle."""
     known = {frozenset(g.points) for g in given if isinstance(g, Distance)}
@@ -206,9 +213,10 @@ def _measurable(
                 fan |= other if fan & other else set()
         known |= {frozenset(pair) for fan in fans for pair in combinations(fan, 2)}
     return [
-        Distance(a, b, abs(sketch[b] - sketch[a]))
+        Distance(a, b, length.high, length.low)
         for a, b in combinations(points, 2)
         if frozenset((a, b)) not in known
+        for length in [abs(sketch[b] - sketch[a])]
     ]
 
 
@@ -225,13 +233,17 @@ def _contradiction(
     )
 
 
-def _upright(z: Mapping[str, complex], points: tuple[str, ...]) -> dict[str, complex]:
+def _upright(
+    z: Mapping[str, Precise], points: tuple[str, ...], measured: Sequence[Distance]
+) -> LinkShape:
     """Move the first point to the origin and the second onto the positive real axis."""
     axis = z[points[1]] - z[points[0]]
-    if axis == 0:
+    if axis.high == 0:
         raise ShapeError(
             f"{points[0]} and {points[1]} coincide: the angle of a link needs two places"
         )
     size = abs(axis)
     turned = {p: (z[p] - z[points[0]]) * axis.conjugate() / size for p in points[2:]}
-    return {points[0]: 0j, points[1]: size + 0j, **turned}
+    local = {points[0]: Precise(0j), points[1]: size + 0j, **turned}
+    low = {p: place.low for p, place in local.items()}
+    return LinkShape({p: place.high for p, place in local.items()}, tuple(measured), low)

@@ -21,33 +21,38 @@ __all__ = ["link_shapes"]
 def link_shapes(linkage: Bodies, problems: Problems) -> Shapes:
     """Shapes of all links; contradictions are added to ``problems``."""
     local: dict[str, Mapping[str, complex]] = {}
+    rest: dict[str, Mapping[str, complex]] = {}
+    numbers = linkage.numbers
     measured: list[Measured] = []
     lengths = {tuple(key.split()): number for key, number in linkage.lengths.items()}
     angles = {tuple(key.split()): number for key, number in linkage.angles.items()}
     lengths_at = _by_point(lengths)
     angles_at = _by_point(angles)
     for link, points in linkage.links.items():
-        sketch = {point: linkage.sketched(point) for point in points}
+        sketch = {point: linkage.precisely_sketched(point) for point in points}
         distances = [
-            Distance(pair[0], pair[1], linkage.numbers(lengths[pair]))
+            Distance(pair[0], pair[1], length.high, length.low)
             for pair in _inside(lengths_at, points)
+            for length in [numbers.precise(lengths[pair])]
         ]
         vertices = [
-            VertexAngle(a, v, b, linkage.numbers(angles[a, v, b]) * linkage.angle.radians)
+            VertexAngle(a, v, b, angle.high, angle.low)
             for a, v, b in _inside(angles_at, points)
+            for angle in [numbers.precise_angle(angles[a, v, b])]
         ]
         try:
             if link == GROUND:
-                _check_ground(sketch, distances, vertices)
-                local[link] = sketch
+                local[link] = {point: place.high for point, place in sketch.items()}
+                rest[link] = {point: place.low for point, place in sketch.items()}
+                _check_ground(local[link], distances, vertices)
                 continue
             shape = place(tuple(points), sketch, distances, vertices)
         except ShapeError as error:
             problems.add(_key_of(error, link), error.message)
             continue
-        local[link] = shape.local
+        local[link], rest[link] = shape.local, shape.rest
         measured += _measured(link, shape, linkage, problems)
-    return Shapes(local, tuple(measured))
+    return Shapes(local, tuple(measured), rest)
 
 
 def _by_point(table: Mapping[tuple[str, ...], object]) -> dict[str, list[tuple[str, ...]]]:

@@ -9,20 +9,23 @@ import numpy as np
 
 from linkwork.foundation.elementwise import choose, detached, everywhere, largest, vector
 from linkwork.foundation.lanes import Rest, rest_of
+from linkwork.foundation.precise import Precise
 from linkwork.mechanism.least_norm import independent, least_norm
 from linkwork.mechanism.link_dimension import AGREE, Distance, Given, ShapeError, VertexAngle
 
 __all__ = ["nearest_shape"]
 
 _MOST_STEPS = 60
+_POLISHES = 3
 _SMALL = 1e-10  # relative: Newton's last step
 _FIRST_STEPS = 6  # most shapes need four
 
 
 def nearest_shape(
-    points: tuple[str, ...], sketch: Mapping[str, complex], rows: Sequence[Given]
-) -> tuple[dict[str, complex], list[Distance]]:
+    points: tuple[str, ...], exact: Mapping[str, Precise], rows: Sequence[Given]
+) -> tuple[dict[str, Precise], list[Distance]]:
     """Solve all dimensions together, nearest to the sketch; measure there what they leave open."""
+    sketch = {p: place.high for p, place in exact.items()}
     # the sketch selects a shape; only what is measured in it enters its dimensions
     start = {p: detached(sketch[p]) for p in points}
     held = _detached(rows)
@@ -43,7 +46,21 @@ def nearest_shape(
             wrong[0].table,
             wrong[0].key,
         )
-    return placed, [Distance(a, b, abs(placed[b] - placed[a])) for a, b in missing]
+    found = _polished(placed, rows) if rows else dict(exact)
+    return found, [Distance(a, b, abs(found[b] - found[a]).high) for a, b in missing]
+
+
+def _polished(z: Mapping[str, complex], rows: Sequence[Given]) -> dict[str, Precise]:
+    """The points of a shape that satisfies all rows to rounding, as exact as these are."""
+    found = {p: Precise(place) for p, place in z.items()}
+    if not all(place.has_rest for place in found.values()):
+        return found
+    slopes = _slopes(z, rows)
+    for _ in range(_POLISHES):
+        errors = [row.precise_error(found).high for row in rows]
+        step = _moved(dict.fromkeys(z, 0j), least_norm(slopes, errors))
+        found = {p: place + step[p] for p, place in found.items()}
+    return found
 
 
 def _missing(points: tuple[str, ...], rows: Sequence[Given]) -> list[tuple[str, str]]:

@@ -166,6 +166,10 @@ class SingleCurvature(Protocol):
     def jacobian_rounding(self) -> list[list[float]]:
         """(m, N)."""
 
+    @property
+    def printing(self) -> list[float]:
+        """(n,)."""
+
 
 class Curvature(Protocol):
     """Second derivatives and rounding, as proofs need them.
@@ -208,3 +212,7 @@ class Curvature(Protocol):
     @property
     def jacobian_rounding(self) -> Array:
         """(B, m, N) bounds of the error of computing dF/dv and its products with m numbers."""
+
+    @property
+    def printing(self) -> Array:
+        """(B, n) bounds of the error of printing the unknowns."""

@@ -17,6 +17,7 @@ from linkwork.equations.part_rows import PartRows
 from linkwork.expression.tree import Name
 from linkwork.foundation.elementwise import phase as phase_of, uniform_value
 from linkwork.foundation.names import canonical
+from linkwork.foundation.precise import PI, joined, sin_cos
 from linkwork.mechanism.description import Key
 from linkwork.mechanism.part.cam import Cam
 from linkwork.mechanism.part.guide import guide_named
@@ -33,13 +34,12 @@ def write(cam: Cam, key: Key, rows: PartRows) -> None:
 def _programmed(rows: PartRows, cam: Cam, key: Key) -> None:
     """A length or an angle of the follower is a function of the cam's angle."""
     frames = rows.frames
-    radians = frames.linkage.angle.radians
     motion = program_of(cam, frames.linkage)
     found = follower_of(cam, frames, motion)
     if isinstance(found, str):
         rows.problems.add((*key, "base"), found)
         return
-    start = frames.linkage.numbers(cam.start) * radians
+    start = frames.linkage.numbers.precise_angle(cam.start)
     turned, at = frames.angles_of([(cam.cam, 1.0), (found.frame, -1.0)])
     swung, off = frames.angles_of(found.angles)
     if not turned:
@@ -50,24 +50,24 @@ def _programmed(rows: PartRows, cam: Cam, key: Key) -> None:
         return
     constant = found.constant + off
     if not found.length:  # equal angles may differ by whole turns
-        now = sum(weight * frames.start[name] for name, weight in swung.items())
-        constant -= math.tau * round((now + constant) / math.tau)
+        now = (frames.sketched_sum(swung) + constant).high
+        constant = constant - PI * (2.0 * round(now / math.tau))
     weights = {**({found.length: 1.0} if found.length else {}), **swung}
     rows.laws.append(
         LawEquation(
             label=cam.name,
             terms=tuple((canonical(name), weight) for name, weight in weights.items()),
-            constant=uniform_value(constant),
+            constant=uniform_value(constant.high),
             law=motion.times(found.sign),
             shown=cam.name,
             meaning=_motion_text(cam, found.sign),
             inner=tuple((canonical(name), weight) for name, weight in turned.items()),
-            offset=uniform_value(at - start),
+            offset=uniform_value((at - start).high),
             kind="length" if found.length else "angle",
         )
     )
     try:
-        outline = found.path.outline() * cmath.exp(-1j * start)
+        outline = found.path.outline() * cmath.exp(-1j * start.high)
     except Undercut as cut:
         where = frames.linkage.angle.from_radians(cut.where)
         roller = " or a smaller roller" if cam.contact == "roller" else ""
@@ -179,17 +179,16 @@ def _flat(
         guide = guide_named(linkage, cam.slider)
         assert isinstance(guide, Slider)
         body, base = guide.link, point
-        a, b = (linkage.shapes.local[guide.on][p] for p in guide.line)
-        frame, direction = guide.on, 1j * (b - a) / abs(b - a)
+        frame, line = guide.on, linkage.shapes.direction(guide.on, guide.line) * 1j
     else:
         assert cam.link is not None
         assert cam.pivot is not None
         body = frame = cam.link
         base = cam.pivot
-        own = linkage.shapes.local[body]
-        direction = (own[point] - own[base]) / abs(own[point] - own[base])
+        line = linkage.shapes.direction(body, (base, point))
+    direction = complex(line.high)
     way = f"{cam.name}_way"
-    term = frames.vector_term(direction, None, frame, way)
+    term = frames.vector_term(line, None, frame, way)
     angle, other = frames.angle[frame], frames.angle[cam.cam]
     facing = direction * cmath.exp(1j * (angle.constant - other.constant))
     facing *= cmath.exp(1j * (frames.now(angle) - frames.now(other)))
@@ -209,9 +208,13 @@ def _flat(
         if part.variable is not None:
             symbol = canonical(part.variable)
             phase[symbol] = phase.get(symbol, 0.0) + weight
-    unit = sign * direction * cmath.exp(1j * (angle.constant - other.constant))
+    sine, cosine = sin_cos(frames.constant[frame] - frames.constant[cam.cam])
+    unit = line * joined(cosine, sine) * sign
     tangent = Term.vector(
-        unit, None, canonical(f"{cam.name}_speed"), tuple((n, w) for n, w in phase.items() if w)
+        unit.high,
+        None,
+        canonical(f"{cam.name}_speed"),
+        tuple((n, w) for n, w in phase.items() if w),
     )
     _direction(rows, cam.name, outline, tangent)
     turned = cmath.exp(1j * (other.constant + frames.now(other)))

@@ -30,6 +30,7 @@ _HALVINGS = 24  # of the pieces of a formula; at a kink no number suffices
 _MOST_PIECES = 20_000
 _EXACT = 4e-15  # [rad] between a formula and its pieces, and in unit roundoffs:
 _ROUNDINGS = 2.0
+_ROUNDED = 2.0 * EPSILON * math.tau  # of the angles themselves
 _INSIDE = np.array([0.25, 0.5, 0.75])  # of a piece, for the comparison with the formula
 _DRAWN = 720  # points of a pitch curve
 _MOST_LOBES = 12
@@ -44,31 +45,30 @@ class _Misfit(Exception):
 def write(gear: NoncircularGear, key: Key, rows: PartRows) -> None:
     """q (θ2 - θa) - p (θ1 - θa) - q g(θ1 - θa - start) = constant, k = p/q."""
     frames, linkage = rows.frames, rows.frames.linkage
-    radians = linkage.angle.radians
     first, second = gear.wheels
     inner, at = frames.angles_of([(first, 1.0), (gear.arm, -1.0)])
     if not inner:
         rows.held(first, gear.arm, (*key, "wheels"))
         return
     try:
-        ratio, rest = _law(gear, linkage)
+        ratio, rest, off = _law(gear, linkage)
         _check_closed(gear, ratio, rest)
     except _Misfit as misfit:
         rows.problems.add((*key, misfit.args[0]), misfit.args[1])
         return
     p, q = float(ratio.numerator), float(ratio.denominator)
     weights, held = frames.angles_of([(second, q), (first, -p), (gear.arm, p - q)])
-    offset = at - linkage.numbers(gear.start) * radians
+    offset = at - linkage.numbers.precise_angle(gear.start)
     law = rest.times(q)
-    begin = uniform_value(offset - at)  # argument of the law at angle 0 of the first wheel
+    begin = uniform_value((offset - at).high)  # argument of the law at angle 0 of the first wheel
     if gear.phase is not None:
-        constant = held - q * linkage.numbers(gear.phase) * radians + _at(law, begin)
+        total = held - linkage.numbers.precise_angle(gear.phase) * q + _at(law, begin)
     else:
-        angle = sum(weight * frames.sketched(name) for name, weight in inner.items()) + offset
-        now = sum(weight * frames.sketched(name) for name, weight in weights.items())
-        constant = _at(law, uniform_value(angle)) - now
-        value = (held + _at(law, begin) - constant) / q
+        angle = uniform_value((frames.sketched_sum(inner) + offset).high)
+        total = _at(law, angle) - frames.sketched_sum(weights)
+        value = (held.high + _at(law, begin) - total.high) / q
         rows.measured.append(MeasuredInPart(gear.name, "phase", value, "angle"))
+    constant = total.high
     rows.laws.append(
         LawEquation(
             label=gear.name,
@@ -77,20 +77,22 @@ def write(gear: NoncircularGear, key: Key, rows: PartRows) -> None:
             law=law,
             shown=canonical(gear.name),
             inner=tuple((canonical(name), weight) for name, weight in inner.items()),
-            offset=uniform_value(offset),
+            offset=uniform_value(offset.high),
             meaning=f"{gear.name} is the lead of the second wheel over uniform rotation",
             kind="angle",
+            # in both places where the law enters: here, and in the constant
+            error=2.0 * q * off,
         )
     )
-    _draw(gear, ratio, rest, uniform_value(held - constant) / q, rows)
+    _draw(gear, ratio, rest, uniform_value(held.high - constant) / q, rows)
 
 
 def _at(law: Piecewise, x: float) -> float:
     return float(law(np.array([x]))[0])
 
 
-def _law(gear: NoncircularGear, linkage: Bodies) -> tuple[Fraction, Piecewise]:
-    """The mean ratio k and the periodic rest g of ψ over one turn of φ."""
+def _law(gear: NoncircularGear, linkage: Bodies) -> tuple[Fraction, Piecewise, float]:
+    """The mean ratio k, the periodic rest g of ψ over one turn of φ, and how far it may be off."""
     if gear.table:
         radians = linkage.angle.radians
         table = np.array([[uniform_value(linkage.numbers(n)) for n in row] for row in gear.table])
@@ -101,7 +103,7 @@ def _law(gear: NoncircularGear, linkage: Bodies) -> tuple[Fraction, Piecewise]:
         rest = psi - psi[0] - float(ratio) * phi
         rest[-1] = rest[0]
         begin = float(table[0, 0]) * radians
-        return ratio, _shifted(spline(phi, rest, True), begin)
+        return ratio, _shifted(spline(phi, rest, True), begin), _ROUNDED
     phi = np.linspace(0.0, math.tau, _PIECES + 1)
     if gear.law:
         return _pieces_of_formula(gear.law, phi, linkage)
@@ -112,10 +114,10 @@ def _law(gear: NoncircularGear, linkage: Bodies) -> tuple[Fraction, Piecewise]:
     ratio = _ratio(over, "pitch_curve", _NEARLY)
     # the curve closes only approximately; the law must close exactly
     jet = jet * (float(ratio) * math.tau / over)
-    return ratio, _through(phi, jet, float(ratio))
+    return ratio, _through(phi, jet, float(ratio)), _ROUNDED
 
 
-def _pieces_of_formula(law: str, phi: Array, linkage: Bodies) -> tuple[Fraction, Piecewise]:
+def _pieces_of_formula(law: str, phi: Array, linkage: Bodies) -> tuple[Fraction, Piecewise, float]:
     """The mean ratio and the rest of a formula, in pieces that are halved until they agree with it.
 
     Proofs are valid for these pieces, so they must equal the given law to rounding.
@@ -133,7 +135,8 @@ def _pieces_of_formula(law: str, phi: Array, linkage: Bodies) -> tuple[Fraction,
         off = np.abs(rest(inside.ravel()).reshape(inside.shape) - wanted)
         coarse = (off > _EXACT + _ROUNDINGS * EPSILON * rounding).any(axis=1)
         if not coarse.any():
-            return ratio, rest
+            # between the places that are compared it may be a little larger
+            return ratio, rest, _ROUNDED + 2.0 * float(off.max())
         # the middle of the points inside a piece
         halves = inside[coarse, 1]
         if len(phi) + len(halves) > _MOST_PIECES:

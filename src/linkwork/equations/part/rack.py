@@ -15,7 +15,7 @@ def write(rack: Rack, key: Key, rows: PartRows) -> None:
     slider = rack.guide(linkage)
     assert slider is not None
     side = rows.side(slider.on, slider.line, rack.center, (*key, "center"))
-    r = side * linkage.numbers(rack.radius)
+    r = side * linkage.numbers.precise(rack.radius).high
     turns = [(rack.pinion, -r), (slider.on, r)]
     rows.tie(
         rack.name,

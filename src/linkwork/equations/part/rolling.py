@@ -22,10 +22,10 @@ def _roll_on_line(rolling: Rolling, key: Key, rows: PartRows) -> None:
     assert rolling.line is not None
     frames, linkage = rows.frames, rows.frames.linkage
     side = rows.side(rolling.on, rolling.line, rolling.center, (*key, "center"))
-    radius = linkage.numbers(rolling.radius)
+    radius = linkage.numbers.precise(rolling.radius) * side
     name = f"{rolling.name}_radius"
-    frames.add_guide((rolling.name, rolling.on, rolling.line), rolling.center, side * radius, name)
-    turns = [(rolling.wheel, side * radius), (rolling.on, -side * radius)]
+    frames.add_guide((rolling.name, rolling.on, rolling.line), rolling.center, radius, name)
+    turns = [(rolling.wheel, radius.high), (rolling.on, -radius.high)]
     measured = (f"{rolling.name} at {rolling.wheel} = 0", 1.0)
     rows.tie(rolling.name, turns, length=(rolling.name, 1.0), measured=measured)
 
@@ -35,7 +35,7 @@ def _roll_on_circle(rolling: Rolling, rows: PartRows) -> None:
     assert rolling.circle is not None
     assert rolling.circle_radius is not None
     frames, numbers = rows.frames, rows.frames.linkage.numbers
-    small, large = numbers(rolling.radius), numbers(rolling.circle_radius)
+    small, large = numbers.precise(rolling.radius), numbers.precise(rolling.circle_radius)
     length = abs(large - small) if rolling.inside else large + small
     a, b = rolling.circle, rolling.center
     frames.add_rod(rolling.name, (a, b), length)

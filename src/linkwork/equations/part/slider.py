@@ -11,6 +11,6 @@ __all__ = ["write"]
 
 def write(slider: Slider, key: Key, rows: PartRows) -> None:
     """Add the displacement as a length in the frame of the link with the line."""
-    offset, name = rows.frames.linkage.numbers(slider.offset), f"{slider.name}_offset"
+    offset, name = rows.frames.linkage.numbers.precise(slider.offset), f"{slider.name}_offset"
     guide = (slider.name, slider.on, slider.line)
     rows.frames.add_guide(guide, slider.points[0], offset, name)

@@ -11,7 +11,7 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 
-from linkwork.foundation.rounding import PROOF_SLACK, UNIT_ROUNDOFF
+from linkwork.foundation.rounding import PRINTED_ANGLE, PROOF_SLACK, UNIT_ROUNDOFF
 from linkwork.kernels.march.closure import Closure, Phase, solve_linear
 from linkwork.kernels.program.recorder import Recorder, Value
 
@@ -80,14 +80,20 @@ class BlockProof:
         return rec.total([rec.multiply(a, b) for a, b in zip(row, column, strict=True)])
 
     def _bound_residual(self, error: Sequence[Number]) -> list[Value]:
-        """|A F| with its rounding."""
+        """|A F| with its rounding, and that of printing the unknowns."""
         rec, f = self.rec, self.closure.residual()
         own = (self.count + 2.0) * UNIT_ROUNDOFF
         noise = [rec.add(e, own * rec.absolute(x)) for e, x in zip(error, f, strict=True)]
-        return [
+        found = [
             rec.add(rec.absolute(self.product(row, f)), self.product(size, noise))  # eq. (25): Y
             for row, size in zip(self.inverse, self.size, strict=True)
         ]
+        for i, k in enumerate(self.unknowns):
+            constant = self.closure.table.printed_constant[k]
+            if constant == constant:  # an angle
+                printed = rec.add(rec.absolute(self.closure.v[k]), constant)
+                found[i] = rec.add(found[i], rec.multiply(PRINTED_ANGLE, printed))
+        return found
 
     def _bound_defect(self, i: int, jacobian: Sequence[Sequence[Number]]) -> list[Value]:
         """Row i of |I - A J|."""
@@ -323,5 +329,5 @@ class _Rounding:
         constant = 0.0 if name in closure.zeros else rec.absolute(rec.input(name))
         size = rec.total([constant, *[abs(closure.v[k]) * abs(w) for k, w in entries]])
         spread = rec.total([self.scale[k] * abs(w) for k, w in entries])
-        error = rec.multiply(UNIT_ROUNDOFF * (len(entries) + 4.0), size)
+        error = rec.multiply(UNIT_ROUNDOFF * (len(entries) + 5.0), size)
         return error, rec.multiply(UNIT_ROUNDOFF * (self.products + len(entries)), spread)

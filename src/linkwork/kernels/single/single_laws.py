@@ -64,5 +64,5 @@ class SingleWithLaws:
     def curvature(self, v: Sequence[float], matrix: Sequence[Row]) -> SingleCurvature:
         """Bounds of the second derivatives multiplied by a matrix, (n, m) or wider."""
         found = self._curvature(np.array([v]), np.array([matrix]))
-        parts = (found.phase, found.slide, found.rounding, found.jacobian_rounding)
+        parts = (found.phase, found.slide, found.rounding, found.jacobian_rounding, found.printing)
         return SingleCurvature(*(part[0].tolist() for part in parts))

@@ -14,7 +14,7 @@ from dataclasses import dataclass
 from functools import cached_property
 from math import hypot
 
-from linkwork.foundation.rounding import UNIT_ROUNDOFF
+from linkwork.foundation.rounding import PRINTED_ANGLE, UNIT_ROUNDOFF
 from linkwork.kernels.curvature import PhaseGroups
 from linkwork.kernels.real_rows import LinearRows
 from linkwork.kernels.single.packed_blocks import Packed, packed_terms
@@ -34,16 +34,21 @@ class SingleCurvature:
     slide: list[Row]
     rounding: Row
     jacobian_rounding: list[Row]
+    printing: Row
 
 
 class SinglePosition:
     """Loops and linear rows over N variables, the n unknowns first.
 
+    ``printed``: of every unknown, see :attr:`LoopTable.printed_constant`.
     ``work``: of one evaluation, about the number of products.
     """
 
-    def __init__(self, groups: PhaseGroups, lines: LinearRows, unknowns: int) -> None:
+    def __init__(
+        self, groups: PhaseGroups, lines: LinearRows, unknowns: int, printed: Sequence[float]
+    ) -> None:
         loops = groups.rows
+        self._printed = [(k, c) for k, c in enumerate(printed) if c == c]
         self.unknowns, self.variables, self.loops = unknowns, loops.variables, loops.rows
         self._take_loops(groups)
         self._take_lines(lines)
@@ -111,7 +116,7 @@ class SinglePosition:
             column = zip(sums[:, p].tolist(), groups.pair_size[:, p].tolist(), strict=True)
             self._pair_sums.append([(r, c, size) for r, (c, size) in enumerate(column) if size])
         self._still = [
-            (weights, constant, UNIT_ROUNDOFF * (self.variables + 2))
+            (weights, constant, UNIT_ROUNDOFF * (self.variables + 3))
             for constant, weights in self._lines
         ]
         self._line_rounding = [
@@ -239,7 +244,10 @@ class SinglePosition:
                     rest += slip[r] * x
                 moduli.append(hypot(z.real, z.imag) + rest)  # eq. (30): |α D|
             slide.append(moduli)
-        return SingleCurvature(phase, slide, rounding, slopes)
+        printing = [0.0] * self.unknowns
+        for k, constant in self._printed:
+            printing[k] = PRINTED_ANGLE * (abs(v[k]) + constant)
+        return SingleCurvature(phase, slide, rounding, slopes, printing)
 
     def _rounding(self, v: Sequence[float], sizes: list[Row]) -> tuple[Row, list[Row]]:
         """Bounds of the errors of F and of dF/dv; ``sizes`` (G, L): filled with sums of moduli."""

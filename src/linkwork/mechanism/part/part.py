@@ -14,6 +14,7 @@ from linkwork.foundation.elementwise import vector
 from linkwork.foundation.errors import choices
 from linkwork.foundation.file_keys import Key as FileKey, ListOf, Number as NumberKey, Text
 from linkwork.foundation.names import free_name
+from linkwork.foundation.precise import Precise
 from linkwork.foundation.value_types import check_values
 from linkwork.mechanism.bodies import Bodies
 from linkwork.mechanism.description import Key, Problems
@@ -129,11 +130,11 @@ class Part:
         """The links of the joint."""
         return ()
 
-    def kept_angle(self, linkage: Bodies) -> tuple[str, str, float] | None:
+    def kept_angle(self, linkage: Bodies) -> tuple[str, str, Precise] | None:
         """Two links whose relative angle is fixed, and this angle [rad]."""
         return None
 
-    def measured_angle(self, linkage: Bodies) -> float | None:
+    def measured_angle(self, linkage: Bodies) -> Precise | None:
         """Its fixed angle, if not given but measured in the sketch [rad]."""
         return None
 

@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from typing import Self
 
-from linkwork.foundation.elementwise import choose, phase
 from linkwork.foundation.file_keys import Key, ListOf, Number as NumberKey, Text
 from linkwork.foundation.names import GROUND
+from linkwork.foundation.precise import PI, Precise, chosen, phase
 from linkwork.mechanism.bodies import Bodies
 from linkwork.mechanism.dimensions import Number
 from linkwork.mechanism.figures import Figure, Guide, Outlines
@@ -108,33 +107,31 @@ class Slider(GuidePart):
         )
         return KinematicPairs(pairs=(slide,))
 
-    def kept_angle(self, linkage: Bodies) -> tuple[str, str, float]:
+    def kept_angle(self, linkage: Bodies) -> tuple[str, str, Precise]:
         return self.link, self.on, self._angle_against(linkage)
 
-    def _angle_against(self, linkage: Bodies) -> float:
+    def _angle_against(self, linkage: Bodies) -> Precise:
         """The angle of the link relative to its carrier, from the line and the sliding points."""
-        s, t = (linkage.shapes.local[self.on][p] for p in self.line)
-        line = phase(t - s)
-        local = linkage.shapes.local[self.link]
+        line = phase(linkage.shapes.direction(self.on, self.line))
         if len(self.points) == 2:
-            own = phase(local[self.points[1]] - local[self.points[0]])
+            own = phase(linkage.shapes.direction(self.link, (self.points[0], self.points[1])))
             d, e, a, b = (linkage.sketched(p) for p in (*self.points, *self.line))
             # two points on a line allow two directions half a turn apart: use that of the
             # sketch
             along = ((e - d) * (b - a).conjugate()).real >= 0
-            return line - own + choose(along, 0.0, math.pi)
+            return line - own + chosen(along, Precise(0.0), PI)
         if self.angle is not None:
-            return line + linkage.numbers(self.angle) * linkage.angle.radians
+            return line + linkage.numbers.precise_angle(self.angle)
         measured = self.measured_angle(linkage)
         # a one-point block has no direction: use that of the line
         return line if measured is None else line + measured
 
-    def measured_angle(self, linkage: Bodies) -> float | None:
+    def measured_angle(self, linkage: Bodies) -> Precise | None:
         directed = self.link == GROUND or len(linkage.links[self.link]) > 1
         if len(self.points) == 2 or self.angle is not None or not directed:
             return None
-        a, b = map(linkage.sketched, self.line)
-        return linkage.sketched_angle(self.link) - phase(b - a)
+        a, b = map(linkage.precisely_sketched, self.line)
+        return linkage.exact_angle(self.link) - phase(b - a)
 
     def check(self, checks: PartChecks) -> None:
         links = checks.linkage.links

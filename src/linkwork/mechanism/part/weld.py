@@ -8,6 +8,7 @@ from typing import ClassVar, Self
 
 from linkwork.foundation.file_keys import Key, ListOf, Number as NumberKey, Text
 from linkwork.foundation.names import GROUND
+from linkwork.foundation.precise import Precise
 from linkwork.mechanism.bodies import Bodies
 from linkwork.mechanism.dimensions import Number
 from linkwork.mechanism.figures import Figure, Outlines
@@ -65,16 +66,18 @@ class Weld(Part):
         """The weld removes the freedom of the pin between its two links."""
         return -1
 
-    def kept_angle(self, linkage: Bodies) -> tuple[str, str, float]:
+    def kept_angle(self, linkage: Bodies) -> tuple[str, str, Precise]:
         first, second = self.links
         angle = self.measured_angle(linkage)
         if angle is None:
-            angle = linkage.numbers(self.angle or 0) * linkage.angle.radians
+            angle = linkage.numbers.precise_angle(self.angle or 0)
         return second, first, angle
 
-    def measured_angle(self, linkage: Bodies) -> float | None:
-        first, second = map(linkage.sketched_angle, self.links)
-        return second - first if self.angle is None else None
+    def measured_angle(self, linkage: Bodies) -> Precise | None:
+        if self.angle is not None:
+            return None
+        first, second = map(linkage.exact_angle, self.links)
+        return second - first
 
     def pairs(self, linkage: Bodies) -> KinematicPairs:
         first, second = (linkage.links[link] for link in self.links)

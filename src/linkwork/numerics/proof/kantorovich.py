@@ -79,10 +79,10 @@ class Expansion:
 
     All data that a proof needs, whatever the uncertainty of the p known variables.
 
-    ``residual`` (B, n): |A F| with its rounding. ``defect`` (B, n, n): |I - A J|. ``slope``
-    (B, n, p): |A F_k| by the known variables; ``lines`` (B, n, p): the part of linear rows.
-    ``phase`` (B, n, G), ``slide`` (B, n, P) and the rest: see :class:`Curvature`; rows whose phases
-    are not those of loops are among ``lines``.
+    ``residual`` (B, n): |A F| with its rounding and that of printing the unknowns. ``defect``
+    (B, n, n): |I - A J|. ``slope`` (B, n, p): |A F_k| by the known variables; ``lines`` (B, n, p):
+    the part of linear rows. ``phase`` (B, n, G), ``slide`` (B, n, P) and the rest: see
+    :class:`Curvature`; rows whose phases are not those of loops are among ``lines``.
     """
 
     residual: Array
@@ -131,13 +131,16 @@ def expansion(
     size, rest = np.abs(matrix), slice(bend.loop_rows, None)
     loss = size @ bend.jacobian_rounding
     f, rounding, slope = system.residual(v), bend.rounding, jacobian[:, :, n:]
+    printing = bend.printing
     if exact:
         # near change points the rounding of F decides where a dead point lies
         f, rounding = (np.stack(part) for part in zip(*map(system.exact_residual, v), strict=True))
+        printing = np.zeros_like(printing)
     lines = np.abs(matrix[:, :, rest] @ slope[:, rest])
     return Expansion(
         residual=np.abs(matrix_vector(matrix, f))  # eq. (25): Y
-        + matrix_vector(size, rounding + (n + 2) * UNIT_ROUNDOFF * np.abs(f)),
+        + matrix_vector(size, rounding + (n + 2) * UNIT_ROUNDOFF * np.abs(f))
+        + printing,
         defect=np.abs(np.eye(n) - matrix @ jacobian[:, :, :n]) + loss[:, :, :n],  # eq. (25): Z0
         slope=np.abs(matrix @ slope) + loss[:, :, n:],
         lines=lines + size[:, :, rest] @ bend.jacobian_rounding[:, rest, n:],

@@ -55,6 +55,7 @@ def expand_singly(
     matrix, jacobian, first = part.inverse, part.jacobian, block.one.loop_rows
     bend = one.curvature(v, matrix)
     f, rounding = (one.residual(v), bend.rounding) if exact is None else exact
+    printing = bend.printing if exact is None else [0.0] * n
     own = (n + 2) * UNIT_ROUNDOFF
     rounding = [x + own * abs(y) for x, y in zip(rounding, f, strict=True)]
     residual, defect, slope, lines = [], [], [], []
@@ -63,7 +64,7 @@ def expand_singly(
     known = len(v) - n
     for i, row in enumerate(matrix):
         size = [abs(a) for a in row]
-        residual.append(abs(dot(row, f)) + dot(size, rounding))  # eq. (25): Y
+        residual.append(abs(dot(row, f)) + dot(size, rounding) + printing[i])  # eq. (25): Y
         entries = [
             abs(dot(row, column) - (1.0 if i == k else 0.0) if k < n else dot(row, column))
             + dot(size, loss)
