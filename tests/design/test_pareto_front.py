@@ -35,7 +35,6 @@ def _dominated(values: Array) -> list[int]:
     ]
 
 
-@pytest.mark.xfail(reason="fits take extremes of polynomials between rows 30° apart", strict=True)
 def test_a_front_of_two_lengths_is_that_of_the_closed_form() -> None:
     """Of all rods the shortest one brings the slider nearest to 60, whatever the stroke."""
     crank = lw.loads(CRANK)
@@ -116,7 +115,6 @@ def test_a_front_that_lies_on_a_bound_and_is_ended_by_one_is_found_whole(
     assert front[-1].numbers["O2 A"] == pytest.approx(largest, abs=1e-4)
 
 
-@pytest.mark.xfail(reason="fits take extremes of polynomials between rows 30° apart", strict=True)
 def test_equal_goals_and_goals_met_together_have_one_design() -> None:
     crank = lw.loads(CRANK)
     stroke = {"of": "stroke(d)", "target": 70}

@@ -21,6 +21,7 @@ from linkwork.foundation.arrays import Array, IndexArray
 from linkwork.foundation.rounding import EQUAL_ROWS
 from linkwork.foundation.sharing import cores, share_out
 from linkwork.mechanism.varied_number import VariedNumber
+from linkwork.motion.between_rows import between_rows
 from linkwork.motion.model import Model
 from linkwork.numerics.lane_bounds import Box, OwnVariables
 from linkwork.numerics.lane_least_squares import LaneFit, Residuals, minimise, starts_of
@@ -215,9 +216,13 @@ class FitProblem:
         return OwnVariables(least=least, most=most, in_order=True, gap=gap, span=span)
 
     def _rows(self, at: Array) -> SolvedLanes:
-        """Lanes at inputs, begun at the nearest rows of the mechanism's motion."""
+        """Lanes at inputs, begun between or at the nearest rows of the mechanism's motion."""
         away = inputs_away(at, self.motion, self.model)
         q = self.motion.q[away.argmin(axis=1)]
+        far = away.min(axis=1) > 0.0
+        if far.any() and self.motion.found.all():
+            between = between_rows(self.model, self.motion)(at[far]).columns[0][:, : q.shape[1]]
+            q[far] = np.where(np.isfinite(between), between, q[far])
         return SolvedLanes(self.writer, self.numbers, q, at, self.lanes)
 
     @property

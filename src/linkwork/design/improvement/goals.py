@@ -7,6 +7,7 @@ max(B.transmission)``). Misses are in file units.
 
 from __future__ import annotations
 
+import math
 import re
 from abc import ABC, abstractmethod
 from collections.abc import Sequence
@@ -45,6 +46,7 @@ _OF_FORMULA = re.compile(
 _NUMBER = "number_{}_of_the_motion"
 _ZERO = np.zeros(())
 _TILT = 4.0 * EQUAL_ROWS
+_STEP = 0.09  # between rows [rad or part of the range]: extremes between them are exact to rounding
 _STIFF = 100.0  # weight of bounds: their shifts converge faster
 _MARGIN = 1e-7  # relative: by which bounds hold in the end
 _NONE = 1e-2  # of this margin: rounding
@@ -278,6 +280,9 @@ class _NumberMisses(Misses):
                 f'"{goal.of}" mixes numbers of the motion with "{min(others)}", which has a value '
                 f"in each row: write min({min(others)}), max or mean"
             )
+        if len(table) > 2 and there.all():
+            table = _close_rows(table, step_of(table, Kind(model.equations.inputs[0].kind)))
+            self.there = np.ones(len(table), dtype=bool)
         super().__init__(goal, table, max(asked.needs for asked in self.asked.values()))
         self.angle = model.description.angle
 
@@ -334,6 +339,13 @@ class _NumberMisses(Misses):
         # rows of no weight may have no derivative
         used = np.any([weight != 0.0 for weight in weights], axis=0)
         return numbers, np.where(used[:, :, None], by_x, 0.0).sum(axis=1)
+
+
+def _close_rows(table: Array, step: float) -> Array:
+    """The rows of a table, and others between them."""
+    parts = math.ceil(step / _STEP)
+    row = np.arange(parts * (len(table) - 1) + 1) / parts
+    return np.interp(row, np.arange(len(table)), table)
 
 
 def _one_sided_slopes(
