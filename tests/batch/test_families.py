@@ -100,11 +100,9 @@ def test_reductions_of_no_use_are_refused(family: Family) -> None:
         family.reduced({"rocker": lambda values: values})
 
 
-def test_reductions_in_a_mapping_are_deprecated(family: Family) -> None:
-    with pytest.warns(DeprecationWarning, match=re.escape('family.reduced(["stroke(rocker)"])')):
-        found = family.reduced({"rocker": "stroke"})
-    new = family.reduced("stroke(rocker)")
-    np.testing.assert_array_equal(found["rocker.stroke"], new["stroke(rocker)"])
+def test_a_mapping_of_reductions_has_functions(family: Family) -> None:
+    with pytest.raises(InputError, match=re.escape('family.reduced(["stroke(rocker)"])')):
+        family.reduced({"rocker": "stroke"})
 
 
 # ------------------------------------------------------------------ parts

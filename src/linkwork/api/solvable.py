@@ -7,7 +7,6 @@ from typing import TYPE_CHECKING
 
 from linkwork import batch, motion
 from linkwork.api.described import DescribedMechanism
-from linkwork.foundation.deprecation import former_method
 from linkwork.foundation.errors import InputError
 from linkwork.foundation.internal import internal
 from linkwork.mechanism.dimensions import Number
@@ -26,7 +25,7 @@ if TYPE_CHECKING:
 __all__ = ["SolvableMechanism"]
 
 
-@internal("moving_loops", "guessed_points", "pulled_guess", "sweep_beside")
+@internal("moving_loops", "guessed_points", "pulled_guess")
 class SolvableMechanism(DescribedMechanism):
     """The part of :class:`~linkwork.api.mechanism.Mechanism` that needs no drawing."""
 
@@ -190,8 +189,6 @@ class SolvableMechanism(DescribedMechanism):
         if started is None:
             started = motion.sweep(self.model, certify=False, explained=False)
         return started
-
-    sweep_beside = former_method("sweep_beside", approximate_sweep, removed_in="0.4")
 
     def moving_loops(self, cycle: Motion) -> tuple[MovingLoop, ...]:
         """The loop equations over a motion as vectors; empty without loops."""

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
-from warnings import warn
 
 import numpy as np
 
@@ -24,8 +23,8 @@ from linkwork.motion.model import Model
 
 __all__ = ["Family", "Reduction", "family_of"]
 
-#: A reduction by name, or a function from values (D, R) to (D,); NaN marks missing positions.
-Reduction = str | Callable[[Array], Array]
+#: A function from values (D, R) to (D,); NaN marks missing positions.
+Reduction = Callable[[Array], Array]
 
 _MOST_BYTES = 4 << 30  # limit for the unknowns of one call
 _PART = 16_384  # designs reduced at a time, fewer if unknowns and rates exceed
@@ -164,7 +163,7 @@ class Family:
         wanted : sequence of str, or Mapping
             Numbers of a motion by name, see ``linkwork quantities``; or a mapping of quantities and
             rates (``B.x.velocity``) to one or more functions from values (D, R) to (D,), where
-            missing positions are NaN. Names of reductions in a mapping are deprecated.
+            missing positions are NaN.
 
         Returns
         -------
@@ -244,15 +243,8 @@ def _columns(
         return
     for name, several in wanted.items():
         for reduction in several if isinstance(several, tuple) else (several,):
-            if callable(reduction):
-                word = getattr(reduction, "__name__", "value")
-                yield _Column(f"{as_name(name)}.{word}", name, reduction)
-                continue
-            asked = f"{reduction}({as_name(name)})"
-            warn(
-                f'write family.reduced(["{asked}"]): names of reductions in a mapping are removed '
-                "in version 0.4",
-                DeprecationWarning,
-                stacklevel=3,
-            )
-            yield _Column(f"{name}.{reduction}", asked)
+            if not callable(reduction):
+                told = f'family.reduced(["{reduction}({as_name(name)})"])'
+                raise InputError(f"a mapping gives functions; numbers of a motion: {told}")
+            word = getattr(reduction, "__name__", "value")
+            yield _Column(f"{as_name(name)}.{word}", name, reduction)

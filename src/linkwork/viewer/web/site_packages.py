@@ -28,7 +28,6 @@ _UNUSED = (
     "kernels/gpu",
     "viewer/web",
     *(f"viewer/static/{name}.js" for name in ("live", "linkwork", "web", "web_worker", "widget")),
-    "everyday.py",
     "viewer/library.json",
     "__main__.py",
 )
