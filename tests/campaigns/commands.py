@@ -71,7 +71,7 @@ report -o a.html | report -o a.docx | report -o a.md | report -o a.pdf --templat
 plates -o a.dxf --layout --labels --bill a.csv
 plates -o a.svg | plates -o a.stl | plates -o a.3mf | plates -o a.step
 link | link --text --json | link --app https://a.org --embed | link --app https://a.org --qr a.svg
-study -o a.zarr --fresh --quiet --workers 1
+study -o a.zarr --force --quiet --workers 1
 """
 _PLAN = """\
 format = 1

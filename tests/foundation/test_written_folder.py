@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import os
-import shutil
 import signal
 from collections.abc import Iterator
 from pathlib import Path
@@ -12,7 +11,7 @@ from types import FrameType
 import pytest
 
 from linkwork.foundation.errors import InputError
-from linkwork.foundation.written_folder import check_place, moved_aside, written_folder
+from linkwork.foundation.written_folder import check_place, written_folder
 
 
 def test_a_place_where_no_folder_can_be_is_refused_and_nothing_is_left(tmp_path: Path) -> None:
@@ -97,21 +96,3 @@ def test_an_interruption_waits_until_all_files_are_replaced(
     finally:
         signal.signal(signal.SIGINT, handler)
     assert told == [signal.SIGINT]
-
-
-def test_a_folder_is_moved_into_the_other_one_where_nothing_can_lie_beside_it(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    out, part, move = tmp_path / "out", tmp_path / "out" / "part", shutil.move
-    part.mkdir(parents=True)
-    (part / "a").write_text("new")
-
-    def moved(source: Path, target: Path) -> object:
-        if target.parent == tmp_path:
-            raise PermissionError(13, "Permission denied")
-        return move(source, target)
-
-    monkeypatch.setattr(shutil, "move", moved)
-    (out / "out-2").mkdir()
-    assert moved_aside(part, out) == out / "out-3"
-    assert (out / "out-3" / "a").read_text() == "new"

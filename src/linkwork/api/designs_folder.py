@@ -41,15 +41,15 @@ class FolderOptions:
     """What a folder holds besides the delivered designs and their task.
 
     ``refused``: the refused designs too; ``draw``: a picture of each design; ``csv``, ``html``: a
-    table and a page of all designs; ``fresh``: replaces the files of an earlier synthesis that are
-    unchanged since, and keeps all others.
+    table and a page of all designs; ``force``: replaces the files of an earlier synthesis and keeps
+    all others.
     """
 
     refused: bool = False
     draw: bool = False
     csv: bool = False
     html: bool = False
-    fresh: bool = False
+    force: bool = False
 
 
 def write_designs(
@@ -169,7 +169,7 @@ def check_folder(root: Path, options: FolderOptions, task: Task) -> Collection[s
     InputError
         If the folder holds files that are not to be replaced, or cannot be written.
     """
-    return _own_files(options, task).check(root, options.fresh)
+    return _own_files(options, task).check(root, options.force)
 
 
 def keeps_earlier(found: Synthesis, earlier: Collection[str]) -> bool:
@@ -178,19 +178,16 @@ def keeps_earlier(found: Synthesis, earlier: Collection[str]) -> bool:
 
 
 def _own_files(options: FolderOptions, task: Task) -> OwnFiles:
-    copy = task_copy(task)
+    design = rf"({REFUSED}/)?{re.escape(_stem(task))}-\d+\.(toml|svg)"
     further = {_TABLE: options.csv, _FRONT: options.draw, _PAGE: options.html}
-    suffixes = "toml|svg" if options.draw else "toml"
-    design = rf"({REFUSED}/)?{re.escape(_stem(task))}-\d+\.({suffixes})"
+    named = [re.escape(name) for name, is_written in further.items() if is_written]
     return OwnFiles(
         run="synthesis",
-        option="--fresh (in Python fresh=True)",
+        option="--force (in Python force=True)",
         # file systems that do not tell letters apart have one file for both
-        numbered=re.compile(design, re.IGNORECASE),
-        named={name: text.encode() for name, text in copy.files.items()}
-        | dict.fromkeys((name for name, is_written in further.items() if is_written)),
-        folders=(".", REFUSED) if options.refused else (".",),
-        read=copy.sources,
+        files=re.compile("|".join([design, *named]), re.IGNORECASE),
+        folders=(".", REFUSED),
+        read=task_copy(task).sources,
     )
 
 

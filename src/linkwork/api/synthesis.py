@@ -233,19 +233,18 @@ class Synthesis(result.Synthesis):
         return designs_table(self)
 
     def save(
-        self, folder: str | Path, *, refused: bool = False, fresh: bool = False
+        self, folder: str | Path, *, refused: bool = False, force: bool = False
     ) -> tuple[str, ...]:
         """Write the delivered designs as mechanism files with their task beside them.
 
         Parameters
         ----------
         folder : str or Path
-            A new or empty folder; with ``fresh`` it may hold files.
+            A new or empty folder; with ``force`` it may hold files.
         refused : bool
             Whether to write the refused designs too, in its folder ``refused``.
-        fresh : bool
-            Whether to replace the files of an earlier synthesis in the folder that are unchanged
-            since. All others stay; one that this synthesis could write over is refused.
+        force : bool
+            Whether to replace the files of an earlier synthesis in the folder; all others stay.
 
         Returns
         -------
@@ -259,5 +258,5 @@ class Synthesis(result.Synthesis):
             If the folder holds files that are not to be replaced, or cannot be written.
         """
         return tuple(
-            write_designs(self, folder, FolderOptions(refused=refused, fresh=fresh)).values()
+            write_designs(self, folder, FolderOptions(refused=refused, force=force)).values()
         )

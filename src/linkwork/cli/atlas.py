@@ -24,9 +24,7 @@ from linkwork.textfile.writer import save
 __all__ = ["atlas"]
 
 _SHOWN = 20
-_OWN = OwnFiles(
-    run="search", option="--fresh", numbered=re.compile(r"near-\d+\.toml", re.IGNORECASE)
-)
+_OWN = OwnFiles(run="search", files=re.compile(r"near-\d+\.toml", re.IGNORECASE))
 
 
 @click.command
@@ -34,7 +32,7 @@ _OWN = OwnFiles(
 @click.option("-o", "--output", metavar="PATH", help="Folder for mechanisms; with --index a file.")
 @click.option("--atlas", "file", metavar="FILE", help="Another atlas than the shipped one.")
 @click.option("--count", type=int, help="Mechanisms to find. Default: 100.")
-@click.option("--fresh", is_flag=True, help="Replace the files of an earlier search.")
+@click.option("--force", is_flag=True, help="Replace the files of an earlier search.")
 @click.option("--index", is_flag=True, help="Make an atlas of the stores of studies.")
 @json_option
 @debug_option
@@ -43,7 +41,7 @@ def atlas(
     output: str | None,
     file: str | None,
     count: int | None,
-    fresh: bool,
+    force: bool,
     index: bool,
     as_json: bool,
 ) -> None:
@@ -60,8 +58,8 @@ def atlas(
       linkwork atlas curve.csv --atlas mine.npz
     """
     if index:
-        if fresh or (file, count) != (None, None):
-            raise InputError("--index makes an atlas: leave out --atlas, --count and --fresh")
+        if force or (file, count) != (None, None):
+            raise InputError("--index makes an atlas: leave out --atlas, --count and --force")
         _index(sources, output, as_json)
         return
     if len(sources) != 1:
@@ -72,7 +70,7 @@ def atlas(
         raise
     except MechanismError as error:  # there is no task that names the file
         raise InputError(error.problems[0].message) from None
-    earlier = () if output is None else _OWN.check(as_path(output), fresh)
+    earlier = () if output is None else _OWN.check(as_path(output), force)
     with progress("comparing paths"):
         asked = PathAtlas.shipped() if file is None else PathAtlas.load(file)
         found = asked.nearest(curve.points, 100 if count is None else count)

@@ -31,7 +31,7 @@ _PATIENCE = 1.0  # seconds before the progress line appears
     "--workers", metavar="N", type=int, help="Processes on this machine. Default: one per core."
 )
 @click.option("--scheduler", metavar="ADDRESS", help="Compute on a Dask cluster: tcp://host:8786.")
-@click.option("--fresh", is_flag=True, help="Delete the study in STORE and start over.")
+@click.option("--force", is_flag=True, help="Delete the study in STORE and start over.")
 @click.option("--summary", metavar="STORE", help="Only print the summary of a store.")
 @click.option(
     "--verify", is_flag=True, help="Only compare the files of a store with their checksums."
@@ -47,7 +47,7 @@ def study(
     names: tuple[str, ...],
     workers: int | None,
     scheduler: str | None,
-    fresh: bool,
+    force: bool,
     summary: str | None,
     verify: bool,
     quiet: bool,
@@ -91,7 +91,7 @@ def study(
                 output,
                 workers=workers,
                 scheduler=scheduler,
-                fresh=fresh,
+                force=force,
                 progress=tell,
             )
         except KeyboardInterrupt:

@@ -29,7 +29,7 @@ __all__ = ["synthesize"]
 @click.option("--draw", is_flag=True, help="Draw every written design (SVG).")
 @click.option("--csv", is_flag=True, help="Write a table of all designs: FOLDER/designs.csv.")
 @click.option("--html", is_flag=True, help="Write a page of all designs: FOLDER/index.html.")
-@click.option("--fresh", is_flag=True, help="Replace the files of an earlier synthesis.")
+@click.option("--force", is_flag=True, help="Replace the files of an earlier synthesis.")
 @json_option
 @debug_option
 @click.pass_context
@@ -41,7 +41,7 @@ def synthesize(
     draw: bool,
     csv: bool,
     html: bool,
-    fresh: bool,
+    force: bool,
     as_json: bool,
 ) -> None:
     """Find mechanisms for a task: poses, points, a curve or a function.
@@ -56,9 +56,9 @@ def synthesize(
       linkwork synthesize task.toml -o designs --draw --html
       linkwork synthesize task.toml -o designs --all --json
     """
-    options = FolderOptions(refused=every, draw=draw, csv=csv, html=html, fresh=fresh)
-    if output is None and any((every, draw, csv, html, fresh)):
-        raise InputError("--all, --draw, --csv, --html and --fresh need a folder: add -o FOLDER")
+    options = FolderOptions(refused=every, draw=draw, csv=csv, html=html, force=force)
+    if output is None and any((every, draw, csv, html, force)):
+        raise InputError("--all, --draw, --csv, --html and --force need a folder: add -o FOLDER")
     # a task in a file finds the files that it names beside it
     asked = Task.load(task) if os.path.exists(task) else Task.loads(*text_of_source(task))
     if output is not None:

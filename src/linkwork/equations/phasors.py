@@ -15,7 +15,13 @@ from linkwork.expression.precise_values import radians_of
 from linkwork.expression.tree import Binary, Call, Name, Negative, Node, Number, names_in
 from linkwork.expression.values import value
 from linkwork.foundation.angles import AngleUnit
-from linkwork.foundation.elementwise import display_value, exponential, finite, uniform_value
+from linkwork.foundation.elementwise import (
+    display_value,
+    exponential,
+    finite,
+    is_structurally_nonzero,
+    uniform_value,
+)
 from linkwork.foundation.errors import ExpressionError, choices
 from linkwork.foundation.precise import Precise, joined, sin_cos
 
@@ -202,7 +208,7 @@ class PhasorReader:
 
     def _exponential(self, node: Node, exponent: Node) -> list[Monomial]:
         terms = _join_like_terms(self._sum(exponent))
-        if all(m.constant and m.value.high.imag == 0 for m in terms):
+        if all(m.constant and not is_structurally_nonzero(m.value.high.imag) for m in terms):
             try:
                 return [self._known(node, exponential(_total(terms).high).real)]
             except OverflowError:
@@ -235,7 +241,7 @@ class PhasorReader:
         direction = joined(cosine, sine)
         if not phase:
             return [Monomial(direction, node)]
-        if turn.high == 0.0:
+        if not is_structurally_nonzero(turn.high):
             return [Monomial(Precise(1.0 + 0j), None, (), phase)]
         angle = display_value(turn.high).real / self.unit.radians
         constant = Binary("^", Name("e", "e"), Binary("*", Name("i", "i"), Number(angle)))

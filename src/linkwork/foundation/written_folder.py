@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import itertools
 import os
 import re
 import secrets
@@ -16,7 +15,7 @@ from pathlib import Path
 from linkwork.foundation.errors import InputError
 from linkwork.foundation.paths import unwritten
 
-__all__ = ["PART", "check_place", "moved_aside", "written_folder"]
+__all__ = ["PART", "check_place", "written_folder"]
 
 #: The names of temporary folders.
 PART = re.compile(r"\.linkwork-[0-9a-f]{12}\.part")
@@ -89,20 +88,6 @@ def _replace(whole: Path, part: Path, last: str, stale: Collection[str]) -> None
         with suppress(OSError):
             (whole / name).unlink(missing_ok=True)
             os.removedirs((whole / name).parent)  # as far as ``whole``, which has ``part``
-
-
-def moved_aside(part: Path, out: Path) -> Path:
-    """A written folder as one of its own: beside another one, or in it if nothing can be beside."""
-    whole = out.absolute()
-
-    def free(home: Path) -> Path:
-        names = (f"{whole.name}-{k}" for k in itertools.count(2))
-        return next(home / name for name in names if not os.path.lexists(home / name))
-
-    try:
-        return Path(shutil.move(part, free(whole.parent)))
-    except OSError:
-        return Path(shutil.move(part, free(whole)))
 
 
 @contextmanager

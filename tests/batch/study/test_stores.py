@@ -367,7 +367,7 @@ def test_another_study_is_refused_with_what_differs(whole: Path, tmp_path: Path)
         "  input.rows: 12 there, 23 here\n"
         "  reductions.swing: stroke(rocker) there, nothing here\n"
         "  filters.transmission: min(mu) >= 25 there, min(mu) >= 26 here\n"
-        "Choose another store, or start over with --fresh, which deletes the old "
+        "Choose another store, or start over with --force, which deletes the old "
         "study."
     )
     assert contents(whole) == before
@@ -382,13 +382,13 @@ def test_comments_and_names_of_a_plan_may_change(whole: Path) -> None:
 def test_fresh_begins_again_and_takes_nothing_else_away(whole: Path, tmp_path: Path) -> None:
     store = tmp_path / "out.zarr"
     run_study(study(("seed = 1", "seed = 2")), store, workers=1)
-    run_study(study(), store, workers=1, fresh=True)
+    run_study(study(), store, workers=1, force=True)
     assert contents(store) == contents(whole)
     (tmp_path / "notes").mkdir()
     (tmp_path / "notes" / "zarr.json").write_text("{}", encoding="utf-8")
-    for fresh in (False, True):
+    for force in (False, True):
         with pytest.raises(InputError) as caught:
-            run_study(study(), tmp_path / "notes", fresh=fresh)
+            run_study(study(), tmp_path / "notes", force=force)
         assert str(caught.value) == (
             f'"{tmp_path / "notes"}" exists and is not the store of a study: choose another name'
         )
@@ -407,7 +407,7 @@ def test_a_store_that_is_killed_while_it_is_taken_away_is_there_or_not(
     with monkeypatch.context() as patch:
         patch.setattr("linkwork.batch.study.store.shutil.rmtree", killed)
         with pytest.raises(Killed):
-            run_study(study(*FEW), store, workers=1, fresh=True)
+            run_study(study(*FEW), store, workers=1, force=True)
     run_study(study(), store, workers=1)
     assert contents(store) == contents(whole)
 
@@ -424,7 +424,7 @@ def test_a_store_that_was_taken_away_meanwhile_is_not_written_to(
 
     def late(file: int, how: int) -> None:
         monkeypatch.setattr(fcntl, "flock", lock)
-        run_study(study(*FEW, ("seed = 1", "seed = 2")), store, workers=1, fresh=True)
+        run_study(study(*FEW, ("seed = 1", "seed = 2")), store, workers=1, force=True)
         lock(file, how)
 
     monkeypatch.setattr(fcntl, "flock", late)
@@ -552,10 +552,10 @@ def test_a_store_damaged_beyond_knowing_its_study_can_be_started_over(
     with pytest.raises(InputError) as caught:
         run_study(study(), store, workers=1)
     assert str(caught.value) == (
-        f'"{store}" is damaged beyond knowing its study: start over with --fresh, which deletes '
+        f'"{store}" is damaged beyond knowing its study: start over with --force, which deletes '
         "it, or choose another store"
     )
-    run_study(study(), store, workers=1, fresh=True)
+    run_study(study(), store, workers=1, force=True)
     assert contents(store) == contents(whole)
 
 
@@ -573,14 +573,14 @@ def test_fresh_refuses_to_delete_what_no_study_wrote(whole: Path, tmp_path: Path
         mine.parent.mkdir(parents=True, exist_ok=True)
         mine.write_text("mine", encoding="utf-8")
         with pytest.raises(InputError) as caught:
-            run_study(study(), store, workers=1, fresh=True)
+            run_study(study(), store, workers=1, force=True)
         assert str(caught.value) == (
             f'"{store}" also contains files that are no part of a study, as "{name}": '
             "move them elsewhere, or choose another store"
         )
         mine.unlink()
     (store / "rocker/c/3/0.part").write_bytes(b"incomplete")
-    run_study(study(), store, workers=1, fresh=True)
+    run_study(study(), store, workers=1, force=True)
     assert contents(store) == contents(whole)
 
 

@@ -120,7 +120,7 @@ def _plan(rng: np.random.Generator, witness: Witness, folder: Path) -> None:
         store = folder / "store.zarr"
         witness.call(
             "run_study",
-            lambda: repr(run_study(study, store, workers=1, fresh=store.exists())),
+            lambda: repr(run_study(study, store, workers=1, force=store.exists())),
             SHOWS_PROGRESS,
         )
 

@@ -62,7 +62,7 @@ def run_study(
     *,
     workers: int | None = None,
     scheduler: str | None = None,
-    fresh: bool = False,
+    force: bool = False,
     progress: Callable[[Progress], None] | None = None,
 ) -> Summary:
     """Compute the designs of a plan into a Zarr store that ``xarray.open_zarr`` reads.
@@ -78,7 +78,7 @@ def run_study(
         the calling process computes.
     scheduler : str, optional
         Address of a Dask scheduler, ``tcp://host:8786``, whose workers compute instead.
-    fresh : bool
+    force : bool
         Delete the study in the store and start over.
     progress : callable, optional
         Called with the progress at the beginning and after each chunk.
@@ -103,7 +103,7 @@ def run_study(
     study = plan if isinstance(plan, Study) else read_plan(plan)
     if study.job.device == "gpu" and scheduler is None:
         graphics_card()  # raises an error before a store is created
-    with open_store(study, as_path(store), fresh=fresh) as target:
+    with open_store(study, as_path(store), force=force) as target:
         tell = _teller(study, target.done, progress)
         tell()
         left = [k for k in range(study.chunks) if k not in target.done]

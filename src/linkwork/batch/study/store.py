@@ -80,12 +80,12 @@ class Store:
 
 
 @contextmanager
-def open_store(study: Study, path: Path, *, fresh: bool = False) -> Iterator[Store]:
+def open_store(study: Study, path: Path, *, force: bool = False) -> Iterator[Store]:
     """Create the store of a study, or resume it if it belongs to the same study.
 
     Parameters
     ----------
-    fresh : bool
+    force : bool
         Delete an existing store of any study.
 
     Raises
@@ -94,7 +94,7 @@ def open_store(study: Study, path: Path, *, fresh: bool = False) -> Iterator[Sto
         If the path contains another study or other files, or another run is writing to it.
     """
     files = _files_of(study)
-    if fresh and _exists(path):
+    if force and _exists(path):
         check_is_store(path)  # delete nothing but the store of a study
         _take_away(path)
     if not _exists(path):
@@ -266,13 +266,13 @@ def _check_same(study: Study, path: Path) -> None:
         there = attributes[_IDENTITY]
     else:
         raise InputError(
-            f'"{path}" is damaged beyond knowing its study: start over with --fresh, '
+            f'"{path}" is damaged beyond knowing its study: start over with --force, '
             "which deletes it, or choose another store"
         )
     if told := "\n".join(_differences(there, here)):
         raise InputError(
             f'"{path}" holds another study:\n{told}\n'
-            "Choose another store, or start over with --fresh, "
+            "Choose another store, or start over with --force, "
             "which deletes the old study."
         )
 
