@@ -227,14 +227,13 @@ def test_a_start_that_leads_to_a_dead_point_is_led_again_kept_off_it() -> None:
     """Of 0.8 of its largest angle, the rocker's crank first comes so long that it hardly turns."""
     bar = lw.example("four-bar")
     goal = {"of": "max(rocker)", "target": 0.8 * bar.sweep().value("max(rocker)")}
-    found = bar.improve(goal, starts=6)
+    told: list[float] = []
+    found = bar.improve(goal, starts=6, progress=told.append)
     met = [design for design in found if design.sound and design.total < 1e-12]
     angles = [lw.api.Mechanism(design.description).sweep()["B.transmission"] for design in met]
     assert min(np.minimum(a, 180.0 - a).min() for a in angles) > 0.24
     assert len(met) >= 5
     assert [design.sound for design in found] == sorted((d.sound for d in found), reverse=True)
-    told: list[float] = []
-    bar.improve(goal, starts=6, progress=told.append)
     assert told == sorted(told)
     assert told[-1] <= 1.0
 
@@ -247,12 +246,13 @@ def test_a_start_that_leads_to_a_dead_point_is_led_again_kept_off_it() -> None:
     assert all(design.message.startswith("interrupted") for design in kept)
 
 
+@pytest.mark.extended
 def test_designs_at_dead_points_are_replaced_by_those_of_the_same_start() -> None:
     leg = lw.example("jansen-leg")
     goal = {"of": "stroke(F.x)", "target": 1.2 * leg.sweep().value("stroke(F.x)")}
-    found = leg.improve(goal, starts=6)
+    found = leg.improve(goal, starts=3)
     # a start of which two lanes end alike has one design
-    assert sum(design.sound for design in found) >= 4
+    assert sum(design.sound for design in found) >= 2
 
 
 def test_fits_name_the_starts_of_the_lanes_that_are_left() -> None:
