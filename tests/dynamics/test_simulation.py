@@ -410,3 +410,20 @@ def test_a_motion_may_begin_at_a_stop(start: float, side: str) -> None:
     assert left["a"][-1] == pytest.approx(start - into, abs=1e-12)
     pushed = _lever(np.exp(1j * start), stops=[stop], loads=[lw.Load(link="a", torque=into)])
     assert pushed.simulate(until=1, step=0.5)["a"] == pytest.approx(start, abs=1e-12)
+
+
+def test_a_crank_without_mass_does_not_start_at_its_dead_point() -> None:
+    parts: dict[str, Any] = {
+        "points": {"O": (0, 0), "T": (3, 0), "A": (0.5, 0), "B": (2.3, 0)},
+        "links": {"ground": ["O", "T"], "crank": ["O", "A"], "rod": ["A", "B"], "piston": ["B"]},
+        "masses": {"piston": lw.Mass(mass=1)},
+        "sliders": [
+            lw.Slider(name="d", link="piston", points=("B",), on="ground", line=("O", "T"))
+        ],
+        "inputs": lw.Input(link="crank"),
+    }
+    with pytest.raises(lw.InputError, match="no mass moves in the first instant"):
+        lw.linkage(length="m", **parts).simulate(until=0.1, start_speed="20 rad/s")
+    heavier = {**parts, "masses": {**parts["masses"], "crank": lw.Mass(mass=1, shape="rod")}}
+    motion = lw.linkage(length="m", **heavier).simulate(until=0.1, start_speed="20 rad/s")
+    assert motion.certified.all()

@@ -40,6 +40,7 @@ __all__ = ["Start", "simulate", "start_of"]
 _ROWS = 400
 _MOST_ROWS = 10_000_000
 _LEAST = 1e-100  # seconds: the square of a short step does not vanish
+_WEIGHTLESS = 1e-14  # of the largest inertia on a leg: none, to the rounding of its polynomials
 Start = tuple[Reduction, PositionCurve]
 
 
@@ -106,6 +107,7 @@ def simulate(
         progress=progress,
     )
     _check_inside(travel)
+    _check_inertia(travel)
     travel.begin(speed)
     travel.run()
     motion = with_flywheels(model, _motion(travel, certify))
@@ -158,6 +160,18 @@ def _check_inside(travel: Travel) -> None:
                 f"{bound.asked.name} begins at {value:.6g}, beyond its stop at {bound.value:g}: "
                 f"{travel.reduction.place(bound.key)}"
             )
+
+
+def _check_inertia(travel: Travel) -> None:
+    here, largest = (
+        float(travel.leg.numbers(s)[:, 0].max())
+        for s in (np.array([travel.s]), travel.leg.table.edges)
+    )
+    if here <= _WEIGHTLESS * largest:
+        raise InputError(
+            "no mass moves in the first instant, as at a dead point of a crank without mass: "
+            "start elsewhere, or give masses to the bodies that move there"
+        )
 
 
 def _motion(travel: Travel, certify: bool) -> Motion:
