@@ -191,7 +191,7 @@ def chosen(condition: bool, yes: Precise, no: Precise) -> Precise:
 
 
 def _either(condition: Any, yes: Any, no: Any) -> Any:
-    pick = np.where if isinstance(condition, np.ndarray) else choose
+    pick = np.where if isinstance(condition, np.ndarray) and condition.size > 1 else choose
     return pick(condition, yes, no)
 
 
