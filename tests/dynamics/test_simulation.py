@@ -427,3 +427,106 @@ def test_a_crank_without_mass_does_not_start_at_its_dead_point() -> None:
     heavier = {**parts, "masses": {**parts["masses"], "crank": lw.Mass(mass=1, shape="rod")}}
     motion = lw.linkage(length="m", **heavier).simulate(until=0.1, start_speed="20 rad/s")
     assert motion.certified.all()
+
+
+@pytest.mark.parametrize("start", [1.0, 0.9])
+def test_a_stop_one_length_from_the_start_is_hit(start: float) -> None:
+    """There the leg of positions ends, too."""
+    block = lw.linkage(
+        length="m",
+        points={"O": (0, 0), "T": (1, 0), "P": (start, 0)},
+        links={"ground": ["O", "T"], "block": ["P"]},
+        sliders=[lw.Slider(name="s", link="block", points=("P",), on="ground", line=("O", "T"))],
+        masses={"block": lw.Mass(mass=1)},
+        loads=[lw.Load(point="P", force=(-1, 0))],
+        stops=[lw.Stop(of="s", start=0)],
+        inputs=lw.Input(slider="s", start=0, stop=1, step=1),
+    )
+    motion = block.simulate(until=3)
+    assert motion["s"][-1] == pytest.approx(0.0, abs=1e-13)
+    assert f"at rest since t = {math.sqrt(2 * start):.10g} s" in motion.message
+
+
+@pytest.mark.parametrize(
+    ("torque", "works"),
+    [
+        ("1 - 2*(sin(crank) < 0)", [1.0, 0.0, 1.0, 0.0]),
+        ("1*(sin(crank) > 0)", [1.0, 1.0, 2.0, 2.0]),
+    ],
+)
+def test_switches_half_a_turn_from_the_start_are_met(torque: str, works: list[float]) -> None:
+    """There a leg of positions ends, too; works are in half turns of a unit torque."""
+    rotor = lw.linkage(
+        length="m",
+        points={"O": (0, 0), "P": (1, 0)},
+        links={"ground": ["O"], "crank": ["O", "P"]},
+        masses={"crank": lw.Mass(mass=1, center=(1, 0))},
+        loads=[lw.Load(link="crank", torque=torque)],
+        inputs=lw.Input(link="crank"),
+    )
+    motion = rotor.simulate(until=4.9, start_speed="2 rad/s", step=0.7)
+    at = [k for k, event in enumerate(motion.limit) if event == "switch"][:4]
+    assert motion["crank"][at] == pytest.approx([180.0, 360.0, 540.0, 720.0], abs=1e-9)
+    speeds = [math.sqrt(4.0 + 2.0 * math.pi * work) for work in works]
+    assert motion["crank.velocity"][at] == pytest.approx(speeds, rel=1e-9)
+
+
+@pytest.mark.parametrize(("speed", "key"), [("2 rad/s", "start"), ("-2 rad/s", "stop")])
+def test_a_crank_that_leaves_its_stop_comes_back_to_it(speed: str, key: str) -> None:
+    """The stop is where the curve of positions begins and ends."""
+    bar = lw.linkage(
+        length="m",
+        points={"A": (0, 0), "B": (0.4, 0), "C": (1.5, 0.6), "D": (1.2, 0)},
+        links={
+            "ground": ["A", "D"], "crank": ["A", "B"], "coupler": ["B", "C"], "rocker": ["D", "C"],
+        },
+        masses={
+            "crank": lw.Mass(mass=1, shape="rod"),
+            "coupler": lw.Mass(mass=2, shape="rod"),
+            "rocker": lw.Mass(mass=3, shape="rod"),
+        },
+        gravity=lw.Gravity(angle=-90 if key == "start" else 90),
+        stops=[lw.Stop(of="crank", **{key: 0})],
+        inputs=lw.Input(link="crank"),
+    )  # fmt: skip
+    motion = bar.simulate(until=1.5, start_speed=speed)
+    inside = motion["crank"] if key == "start" else -motion["crank"]
+    assert inside.min() > -1e-9
+    assert inside.max() > 10.0
+    assert "stop of crank" in motion.limit
+
+
+def test_a_short_pulse_ends_a_rest() -> None:
+    pushed = {
+        **SLIDER,
+        "loads": [lw.Load(point="B", force=("-1 + 2e4*(t > 1.03)*(t < 1.0303)", 0))],
+    }
+    stopped = lw.linkage(**pushed, stops=[lw.Stop(of="d", start=3)])
+    motion = stopped.simulate(until=4, step=0.5)
+    # an impulse of 6 Ns less that of the steady load
+    expected = (6.0 - (4.0 - 1.03)) / 2.0
+    assert motion["d.velocity"][-1] == pytest.approx(expected, abs=1e-9)
+
+
+def test_nothing_that_moves_an_unloaded_machine_is_rest() -> None:
+    motion = lw.linkage(**SLIDER).simulate(until=1)
+    assert motion.message == "simulated to t = 1 s; at rest since t = 0 s, in equilibrium"
+    assert (motion["d"] == 3.0).all()
+    assert motion.certified.all()
+
+
+def test_a_start_at_a_change_point_is_refused() -> None:
+    bars = lw.linkage(
+        length="m",
+        points={"A": (0, 0), "B": (0.3, 0), "C": (1.3, 0), "D": (1, 0)},
+        links={
+            "ground": ["A", "D"],
+            "crank": ["A", "B"],
+            "coupler": ["B", "C"],
+            "rocker": ["D", "C"],
+        },
+        masses={"crank": lw.Mass(mass=1, shape="rod"), "coupler": lw.Mass(mass=1, shape="rod")},
+        inputs=lw.Input(link="crank"),
+    )
+    with pytest.raises(lw.InputError, match="would start at a change point"):
+        bars.simulate(until=1, at=0)

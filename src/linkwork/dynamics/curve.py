@@ -16,6 +16,7 @@ from linkwork.dynamics.straight_turn import turn_of
 from linkwork.foundation.angles import FULL_TURN
 from linkwork.foundation.arrays import Array
 from linkwork.foundation.certification import Certification
+from linkwork.foundation.errors import InputError
 from linkwork.foundation.policy import ChangePointPolicy
 from linkwork.foundation.rounding import EPSILON
 from linkwork.foundation.status import Status
@@ -95,6 +96,10 @@ def curve_of(model: Model, start: Array, policy: ChangePointPolicy, certify: boo
         Leg(lead=leg.lead, begin=leg.end, end=leg.begin, rows=leg.rows)
         for leg in reversed(backward)
     ]
+    if not (forward or turned):
+        raise InputError(
+            "the motion would start at a change point, where branches meet: start beside it"
+        )
     value = forward[0].begin if forward else turned[-1].end
     return PositionCurve(
         legs=(*turned, *forward),

@@ -181,6 +181,12 @@ class Reduction:
                 motor.piece = sum(margin > 0.0 for margin in corners)
         self.sides = [margin > 0.0 for margin in further]
 
+    @property
+    def held(self) -> tuple[object, ...]:
+        """The values of all switches, to be compared."""
+        pieces = [motor.piece for motor in self.motors if motor is not None]
+        return dict(self.switches), pieces, self.sides
+
     def release(self) -> None:
         """Let every load follow the state."""
         self.switches, self.sides = FrozenDict(), []

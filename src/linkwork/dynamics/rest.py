@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from itertools import pairwise
 
@@ -12,7 +12,7 @@ import numpy as np
 from linkwork.dynamics.events import BEHIND, Bound
 from linkwork.dynamics.joint_friction import Rubbing
 from linkwork.dynamics.reduced_leg import ReducedLeg
-from linkwork.foundation.arrays import Array
+from linkwork.foundation.arrays import Array, BoolArray
 from linkwork.foundation.rounding import EPSILON
 
 __all__ = ["Support", "excesses", "first_start", "just_ahead"]
@@ -22,7 +22,7 @@ _DEEPEST = 12  # halvings of a piece
 _RESOLVED = 1e-4  # of the largest value: last coefficients of a polynomial through the places
 _HALVINGS = 60
 _ROUNDING = 1e-14  # of the larger acceleration
-_SLOW = 1e-20  # of the leg in a second: a speed that has a direction only
+_SLOW = 1e-20  # of the leg in a second: a speed that has a direction only; also of accelerations
 
 
 def excesses(leg: ReducedLeg, s: float, times: Array, gain: Array, ways: Sequence[float]) -> Array:
@@ -43,7 +43,8 @@ def excesses(leg: ReducedLeg, s: float, times: Array, gain: Array, ways: Sequenc
         # friction locks, but a load without a value ends the rest
         found[way] = np.where(np.isfinite(pull), pull, 0.0 if rubbing else np.inf)
     size = np.maximum(np.abs(found[1.0]), np.abs(found[-1.0]))
-    rounding = np.where(np.isfinite(size), _ROUNDING * size, 0.0)
+    least = _SLOW * float(np.ptp(leg.table.edges))
+    rounding = np.where(np.isfinite(size), _ROUNDING * size + least, 0.0)
     return np.stack([found[way] - rounding for way in ways], axis=1)
 
 
@@ -73,11 +74,32 @@ def first_start(
     if until <= t or "t" not in leg.reduction.names:
         return until, 0.0
     edges = np.linspace(t, until, _PIECES + 1)
+    # a pulse between two comparisons may be short
+    edges = np.union1d(edges, [*_switch_times(leg, s, edges, gain)])
     for low, high in pairwise(edges.tolist()):
         start = _first_positive(lambda x: pull(x).max(axis=1), low, high, _DEEPEST)
         if start is not None:
             return start, float(ways[int(np.argmax(pull(np.array([start]))[0]))])
     return until, 0.0
+
+
+def _switch_times(leg: ReducedLeg, s: float, edges: Array, gain: Array) -> Iterator[float]:
+    """Just after comparisons change their values during a rest."""
+    if not leg.reduction.switch_count:
+        return
+
+    def positive(times: Array) -> BoolArray:
+        found: BoolArray = leg.margins(np.full_like(times, s), 0.0 * times, times, gain) > 0.0
+        return found
+
+    values = positive(edges)
+    for k, number in np.argwhere(values[1:] != values[:-1]).tolist():
+        low, high = edges[k : k + 2].tolist()
+        while high - low > 2.0 * math.ulp(high):
+            middle = 0.5 * (low + high)
+            same = positive(np.array([middle]))[0, number] == values[k, number]
+            low, high = (middle, high) if same else (low, middle)
+        yield high
 
 
 def _first_positive(
@@ -144,4 +166,4 @@ class Support:
                 return f"the stop of {self.bounds[self.touching[way]].asked.name}"
         if leg.reduction.rubs:
             return "friction"
-        return "a load that switches there" if pulls.min() < 0.0 else ""
+        return "a load that switches there" if leg.reduction.switch_count else ""

@@ -192,7 +192,8 @@ def _motion(travel: Travel, certify: bool) -> Motion:
     added = np.array([*(bool(sample.event) for sample in samples), *([False] * len(missing))])
     told = f"simulated to t = {travel.t:.10g} s"
     if travel.held is not None:
-        told += f"; at rest since t = {travel.held:.10g} s, held by {travel.holder}"
+        held = f"held by {travel.holder}" if travel.holder else "in equilibrium"
+        told += f"; at rest since t = {travel.held:.10g} s, {held}"
     if travel.ended:
         told = f"the motion ends at t = {travel.t:.10g} s: {travel.ended}"
     motion = motion_of_rows(named, rows, told, added)

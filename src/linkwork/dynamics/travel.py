@@ -108,7 +108,7 @@ class Travel(Passage):
     def _meet(self, event: Event) -> None:
         bounds = 2 + len(self.bounds)
         if event.number < 2:
-            self._leave(event.number)
+            self._cross(event.number)
         elif event.number < bounds:
             self._hit(event.number - 2)
         elif self.rubbing is not None and event.number == bounds:
@@ -116,19 +116,43 @@ class Travel(Passage):
         elif event.falls:
             self._hold()
         else:
-            # the row has the loads, and so the acceleration, after the switch
-            size = abs(self.s) + float(np.ptp(self.leg.table.edges))
-            self.s, self.speed = just_behind(self.s, self.speed, self._now(), size)
-            self._switch()
-            if abs(self.speed) <= _ZERO * self.fastest and not self.reduction.rubs:
-                self._come_to_rest("switch")
-                return
-            self._hold()
-            self._record(self.t, self.s, self.speed, self._now(), "switch")
-            self._check_chatter()
-            for number, bound in enumerate(self.bounds):
-                if bound.is_passed(self.leg, self.s, self.speed, self.t, self.gain):
-                    self._hit(number)
+            self._switch_behind(self._now())
+            self._go_on_switched()
+
+    def _switch_behind(self, pull: float) -> None:
+        """Let switches have their values just behind; ``pull``: the acceleration in front."""
+        size = abs(self.s) + float(np.ptp(self.leg.table.edges))
+        self.s, self.speed = just_behind(self.s, self.speed, pull, size)
+        self._switch()
+
+    def _go_on_switched(self) -> None:
+        # the row has the loads, and so the acceleration, after the switch
+        if abs(self.speed) <= _ZERO * self.fastest and not self.reduction.rubs:
+            self._come_to_rest("switch")
+            return
+        self._hold()
+        self._record(self.t, self.s, self.speed, self._now(), "switch")
+        self._check_chatter()
+        self._hit_passed()
+
+    def _hit_passed(self) -> None:
+        for number, bound in enumerate(self.bounds):
+            if bound.is_passed(self.leg, self.s, self.speed, self.t, self.gain):
+                self._hit(number)
+
+    def _cross(self, side: int) -> None:
+        """Onto the next leg; switches and stops may lie at the edge between the two."""
+        pull, held = self._now(), self.reduction.held
+        self._leave(side)
+        if self.ended:
+            return
+        state = self.s, self.speed
+        self._switch_behind(pull)
+        if self.reduction.held != held:
+            self._go_on_switched()
+            return
+        self.s, self.speed = state
+        self._hit_passed()
 
     def _switch(self, way: float = 0.0) -> None:
         """Let every switch have the value that it has now, or as a motion that way begins."""
@@ -168,7 +192,7 @@ class Travel(Passage):
         low, high = self.leg.table.edges[[0, -1]]
         out = bool((self.s <= low and self.speed < 0) or (self.s >= high and self.speed > 0))
         if out:
-            self._leave(0 if self.speed < 0.0 else 1)
+            self._cross(0 if self.speed < 0.0 else 1)
         return out
 
     def _leave(self, side: int) -> None:
@@ -192,8 +216,7 @@ class Travel(Passage):
         self.s = (new.begin if ahead else new.end) + beyond
         if old != new.lead:
             self.speed /= float(self.leg.slopes(np.array([self.s]))[0, old])
-        if self.reduction.springs:  # their margins are those of the leg
-            self._switch()
+        self._switch()  # margins of springs are those of the leg
         self._hold()
 
     def _hit(self, number: int) -> None:
