@@ -73,7 +73,8 @@ class Path:
 
 def _menu(rng: np.random.Generator, u: str, about: float, size: float, force: float) -> Load:
     """A random load on a coordinate near a value, of a size."""
-    a = float(about + size * rng.uniform(-0.5, 0.5))
+    # where a motion starts the curve of positions begins
+    a = float(about + size * rng.uniform(-0.5, 0.5) * (rng.random() < 0.8))
     f = float(force * rng.uniform(0.2, 1.0) * rng.choice([-1.0, 1.0]))
     k = abs(f) / size
     at = rng.uniform(0.2, 1.5)
@@ -121,6 +122,8 @@ def random_case(number: int) -> Case:
         "block": _block, "pendulum": _pendulum, "slider-crank": _slider_crank, "four-bar": _four_bar
     }[family](rng)  # fmt: skip
     case.name = f"{family} {number}"
+    if case.stop is not None and case.stop[1] == case.start:
+        case.speed = math.copysign(case.speed, case.stop[0])
     return case
 
 
@@ -130,7 +133,7 @@ def _stop(
     if rng.random() < 0.3:
         return [], None
     side = float(rng.choice([-1.0, 1.0]))
-    value = start - side * size * rng.uniform(0.1, 0.6)
+    value = start - side * size * rng.uniform(0.1, 0.6) * (rng.random() < 0.8)
     bounce = float(rng.choice([0.0, 0.3, 0.7, 1.0]))
     key = "start" if side > 0 else "stop"
     return [lw.Stop(of=q, restitution=bounce, **{key: value})], (side, value, bounce)
