@@ -530,3 +530,19 @@ def test_a_start_at_a_change_point_is_refused() -> None:
     )
     with pytest.raises(lw.InputError, match="would start at a change point"):
         bars.simulate(until=1, at=0)
+
+
+@pytest.mark.parametrize("start", [3.0, 1.0, 0.9, 0.0])
+def test_equilibria_at_a_stop_and_on_a_stretch_do_not_hang_on_the_start(start: float) -> None:
+    machine = {**SLIDER, "points": {**SLIDER["points"], "B": (start, 0)}}
+    stop = lw.Stop(of="d", start=0)
+
+    def places(force: str) -> list[tuple[float, bool, str]]:
+        load = lw.Load(point="B", force=(force, 0))
+        found = lw.linkage(**machine, stops=[stop], loads=[load]).equilibria()
+        return [(round(each.input, 9), each.stable, each.indifferent) for each in found]
+
+    assert places("-d") == [(0.0, True, "")]
+    ((place, _, indifferent),) = places("-max(0, d - 1)")
+    assert 0.0 <= place <= 1.0
+    assert indifferent == "near"

@@ -64,15 +64,27 @@ def equilibria(
     ):
         none = np.zeros(legs[0].variables)
         return (_equilibrium(legs[curve.home], curve.value, none, "everywhere"),)
+    last: list[Equilibrium] = []  # of the last stretch, if it reaches the end of its leg
     for leg, ends in zip(legs, zeros, strict=True):
-        for low, high in sorted(ends, reverse=leg.leg.begin > leg.leg.end):
-            s = 0.5 * (low + high)
+        backwards, is_home = leg.leg.begin > leg.leg.end, leg is legs[curve.home]
+        first, end = leg.table.edges[[-1, 0] if backwards else [0, -1]]
+        before, last = last, []
+        for low, high in sorted(ends, reverse=backwards):
+            # a stretch is listed once, near the start if it comes there
+            s = min(max(curve.value, low), high) if is_home else 0.5 * (low + high)
+            if before and high > low and first in (low, high):
+                if not is_home:
+                    last = before if end in (low, high) else []
+                    continue
+                found.remove(before[0])
             # from the start a place may be reached forwards or backwards
             laps = (0, -1, 1) if curve.closed and bounds else (0,)
             gains = [lap * curve.gain for lap in laps]
             gain = next((gain for gain in gains if _inside(leg, s, gain, bounds)), None)
             if gain is not None:
                 found.append(_equilibrium(leg, s, gain, "near" if high > low else ""))
+                if high > low and end in (low, high):
+                    last = found[-1:]
     kept: list[Equilibrium] = []
     for each in found:
         if not any(_same(model, each, other) for other in kept):
@@ -132,8 +144,7 @@ def _zeros(leg: ReducedLeg) -> Iterator[tuple[float, float]]:
 
 def _inside(leg: ReducedLeg, s: float, gain: Array, bounds: Sequence[Bound]) -> bool:
     """Whether no stop is in the way."""
-    here, still = np.array([s]), np.zeros(1)
-    return all(bound.margin(leg, here, still, still, gain)[0] >= 0.0 for bound in bounds)
+    return not any(bound.is_beyond(leg, s, 0.0, gain) for bound in bounds)
 
 
 def _equilibrium(leg: ReducedLeg, s: float, gain: Array, indifferent: str = "") -> Equilibrium:
