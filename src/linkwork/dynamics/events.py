@@ -85,9 +85,11 @@ class Bound:
 
         A much longer step would look at the margin after the next shock only.
         """
+        if speed == 0.0:
+            return 0.0
         found = 2.0 * abs(speed) / abs(pull) if pull * speed < 0.0 else math.inf
         low = abs(speed) * found < _LOW * float(np.ptp(leg.table.edges))
-        return 0.0 if speed == 0.0 or low or found < _RESTS * until else found
+        return 0.0 if low or found < _RESTS * until else found
 
 
 @dataclass(frozen=True, kw_only=True)
