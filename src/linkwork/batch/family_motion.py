@@ -2,18 +2,21 @@
 
 from __future__ import annotations
 
+import math
 from collections import Counter
 from collections.abc import Iterable, Iterator, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Any
 
 import numpy as np
 
 from linkwork.batch.design_efforts import design_efforts
+from linkwork.batch.design_sweep import design_rows
 from linkwork.batch.design_values import DesignValues
 from linkwork.batch.designs import Designs
 from linkwork.batch.limits import FamilyLimits
+from linkwork.batch.located_extremes import step_of
 from linkwork.batch.located_numbers import located_number
 from linkwork.batch.rates import (
     DesignEvidence,
@@ -23,7 +26,8 @@ from linkwork.batch.rates import (
     design_speeds,
 )
 from linkwork.batch.rows import DesignRows
-from linkwork.batch.single_sweep import message_single
+from linkwork.batch.single_sweep import message_single, with_table
+from linkwork.foundation.angles import FULL_TURN
 from linkwork.foundation.arrays import Array, BoolArray, ComplexArray, StatusArray
 from linkwork.foundation.certification import Certification
 from linkwork.foundation.errors import (
@@ -34,17 +38,19 @@ from linkwork.foundation.errors import (
 from linkwork.foundation.internal import internal
 from linkwork.foundation.names import find_spelling
 from linkwork.foundation.optional_packages import installed_with
+from linkwork.foundation.rounding import EQUAL_ROWS
 from linkwork.foundation.status import Status
 from linkwork.motion.leading_input import leading_input
 from linkwork.results.quantities.asked import Asked, AskedOfMotion, Group
 from linkwork.results.quantities.registry import Quantities
-from linkwork.results.quantity import Rate
+from linkwork.results.quantity import Kind, Rate
 from linkwork.results.series import Series
 
 __all__ = ["FamilyMotion"]
 
 _MOST_BYTES = 4 << 30  # limit for labelled arrays requested without names
 _EVIDENCE = ("residual", "condition", "radius")  # names of the evidence of rows
+_STEP = FULL_TURN / 72  # between rows [rad, or parts of the range]: all smooth extremes are seen
 _NEAR = 1 << 16  # positions whose rates are computed at a time: temporaries fit into the cache
 
 
@@ -252,7 +258,22 @@ class FamilyMotion:
         """A number (D,) that follows from the values of a quantity (D, R) alone; extremes are
         located between the rows.
         """
-        return located_number(self.designs, self.rows, asked, value, self.threads)
+        if not asked.quantity.sides or self._closer is None:
+            return located_number(self.designs, self.rows, asked, value, self.threads)
+        return self._closer.number(asked, self._closer[asked.of.name])
+
+    @cached_property
+    def _closer(self) -> FamilyMotion | None:
+        """The motions at rows so close that they show all extremes, if these are farther apart."""
+        base = self.designs.base
+        kind = Kind(base.equations.inputs[leading_input(base.rows)[0]].kind)
+        parts = math.ceil(step_of(self.leading, kind) / _STEP - EQUAL_ROWS)
+        if parts < 2:
+            return None
+        designs = replace(self.designs, base=with_table(base, base, parts))
+        rows = design_rows(designs, certify=False, threads=self.threads)
+        inputs = designs.base.rows_in_file_units
+        return FamilyMotion(designs=designs, inputs=inputs, rows=rows, threads=self.threads)
 
     def trace(self, point: str) -> ComplexArray:
         """The path of a point as x + iy, (D, R); ``trace("B.velocity")`` is its velocity."""

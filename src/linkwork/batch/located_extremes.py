@@ -21,7 +21,7 @@ __all__ = ["Peaks", "highest_values", "interpolated_extremes", "peaks_of", "step
 _ROWS = 9  # of a polynomial
 _PASSES = 8
 _SOME = 24
-_POLE = 1e3  # times the values of rows: there is a pole, not an extreme
+_POLE = 1e3  # times the values of rows: unless it is exact, there is a pole and no extreme
 _SHARP = 2.0  # of the range of values: how much an extreme may bend per step squared
 _EXACT = 1e-12  # of the values: what the last row adds, ten times what the next one would
 _SAME_PLACE = 1e-6  # of a step: a place so near to a solved one has the same value to rounding
@@ -95,7 +95,7 @@ def highest_values(
     """
     x, y = at[peaks.window], side * value[peaks.design[:, None], peaks.window]
     step = np.abs(np.diff(at)).min()
-    each, highest, size = np.arange(len(x)), y.max(axis=1), np.abs(y).max(axis=1)
+    each, highest, most = np.arange(len(x)), y.max(axis=1), _POLE * np.abs(y).max(axis=1)
     for _ in range(_PASSES):
         top = y.argmax(axis=1)
         here, best = x[each, top], y[each, top]
@@ -104,7 +104,7 @@ def highest_values(
         low, high = np.where(np.isinf(low), here, low), np.where(np.isinf(high), here, high)
         with np.errstate(all="ignore"):
             t, peak, term = interpolated_peaks(x, y, low, high, here)
-        exact = term <= _EXACT * size
+        exact = term <= _EXACT * np.abs(y).max(axis=1)
         highest = np.where(exact, np.fmax(peak, best), best)
         which = np.flatnonzero(~exact & (np.abs(t[:, None] - x).min(axis=1) > _SAME_PLACE * step))
         if not len(which):
@@ -117,7 +117,7 @@ def highest_values(
         away = np.abs(x[which] - t[which, None]).argmax(axis=1)
         x[which, away], y[which, away] = t[which], found
     highest = np.fmax(highest, y.max(axis=1))
-    return np.where(highest > _POLE * size, np.inf, highest)
+    return np.where((highest > most) & ~exact, np.inf, highest)
 
 
 def interpolated_extremes(
