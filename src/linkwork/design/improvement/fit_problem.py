@@ -8,6 +8,7 @@ from functools import cached_property
 
 import numpy as np
 
+from linkwork.design.improvement.exact_numbers import ExactNumbers
 from linkwork.design.improvement.goals import Misses, PathGoal, goal_of
 from linkwork.design.improvement.kept_relations import Together
 from linkwork.design.improvement.lane_work import LaneWork
@@ -147,6 +148,7 @@ class FitProblem:
             if misses.at.tobytes() not in self.rows:
                 self.rows[misses.at.tobytes()] = self._rows(misses.at)
         self.shifts = [np.zeros((2, lanes, misses.count)) for misses in self.goals]
+        self.exact = ExactNumbers(model, given.numbers, self.goals, there, lanes)
         self.new_shifts = [np.zeros_like(shift) for shift in self.shifts]
         self.power, self.largest = 1, np.ones(lanes)
         self.trade: TradeOff | None = None
@@ -199,6 +201,7 @@ class FitProblem:
             getattr(fit, name)[to] = getattr(fit, name)[of]
         for solved in self._solvers:
             solved.copy_lanes(of, to)
+        self.exact.errors[:, to] = self.exact.errors[:, of]
         self._reached[to] = True
 
     def _timing(self, table: Array) -> OwnVariables:
@@ -336,7 +339,8 @@ class FitProblem:
             kept.append((solved, positions[key], at))
         shared, shared_by_x = [np.zeros((count, 0))], [np.zeros((count, 0, parameters))]
         for k, misses in enumerate(self.goals):
-            own, slopes, new = misses.of(positions[misses.at.tobytes()], self.shifts[k][:, lanes])
+            here, error = positions[misses.at.tobytes()], self.exact.errors[k, lanes]
+            own, slopes, new = misses.of(here, self.shifts[k][:, lanes], error)
             self.new_shifts[k][:, lanes] = new
             if not self.moved[k] > 0.0 and (there := np.isfinite(own)).any():
                 self.moved[k] = float(np.abs(slopes[there]).max())
@@ -354,6 +358,23 @@ class FitProblem:
         for solver, found, at in kept:
             solver.keep(found, x, at, lanes, result.total)
         return result
+
+    def correct(self, fit: LaneFit, lanes: IndexArray) -> IndexArray:
+        """Make the numbers of motions exact where lanes are now; the lanes in which they were not.
+
+        Without such goals there are none.
+        """
+        lanes = lanes[np.isfinite(fit.total[lanes])] if self.exact.goals else lanes[:0]
+        changed = np.zeros(self.lanes, dtype=bool)
+        for part in self.work.parts(lanes) if len(lanes) else ():
+            x, values = self.given.all_numbers(fit.x[part]), {}
+            designs = self.writer.written(x)
+            for k, misses in self.exact.goals.items():
+                at = np.broadcast_to(misses.at, (len(part), len(misses.at)))
+                found = self.rows[misses.at.tobytes()].at(designs, at, part)
+                values[k] = misses.values(found)[0][:, 0]
+            changed[part] = self.exact.take(x, values, part)
+        return np.flatnonzero(changed)
 
     def measured(self, fit: LaneFit, lanes: IndexArray) -> Residuals:
         """The misses of lanes without powers, weights and shifts."""
@@ -376,6 +397,7 @@ class FitProblem:
         """All lanes that are known, or the best ones, with their misses."""
         known = np.argsort(fit.total, kind="stable")[: max(1, np.isfinite(fit.total).sum())]
         known = np.sort(known[:most])
+        self.correct(fit, known)
         there = self.measured(fit, known)
         beyond = [misses.beyond(there.shared[:, own]) for misses, own in self._kept]
         fit = fit.take(known)

@@ -29,6 +29,7 @@ from linkwork.foundation.arrays import AnyArray, Array, BoolArray, ComplexArray
 from linkwork.foundation.errors import InputError, UnknownNameError
 from linkwork.foundation.rounding import EQUAL_ROWS
 from linkwork.motion.model import Model
+from linkwork.results.motion import Motion
 from linkwork.results.quantities.asked import Asked, AskedOfMotion, Group
 from linkwork.results.quantities.definition import RowSlopes
 from linkwork.results.quantities.index import MOTION_QUANTITIES
@@ -125,6 +126,13 @@ class Misses(ABC):
         """The number of misses."""
         return len(self.at)
 
+    #: Whether it is one number of the whole motion.
+    is_number = False
+
+    def exact(self, motion: Motion) -> float:
+        """The number of a motion, located between its rows."""
+        raise NotImplementedError
+
     @property
     def is_bound(self) -> bool:
         """Whether only values beyond bounds are misses."""
@@ -140,9 +148,13 @@ class Misses(ABC):
         return np.where(away > _NONE * _margin(np.array([least, most])), away, 0.0)
 
     @np.errstate(all="ignore")  # where there is no position there is no number
-    def of(self, found: LanePositions, shift: Array) -> tuple[Array, Array, Array]:
-        """Weighted misses (D, K), by the numbers, and the new shifts of the bounds, (2, D, K)."""
+    def of(self, found: LanePositions, shift: Array, error: Array) -> tuple[Array, Array, Array]:
+        """Weighted misses (D, K), by the numbers, and the new shifts of the bounds, (2, D, K).
+
+        ``error`` (D,): what the values miss of exact ones.
+        """
         value, by_x = self.values(found)
+        value = value + error[:, None]
         goal = self.goal
         if not self.is_bound:
             wanted: Any = np.array(goal.values) if goal.values else goal.target
@@ -262,11 +274,14 @@ class _TransmissionMisses(_RowMisses):
 class _NumberMisses(Misses):
     """A number of the motion, or a formula of such numbers."""
 
+    is_number = True
+
     def __init__(
         self, model: Model, goal: Goal, table: Array, there: BoolArray, calls: Sequence[str]
     ) -> None:
         text, self.there = goal.of, there
         self.asked: dict[str, AskedOfMotion] = {}
+        self.calls = dict(zip(map(_NUMBER.format, range(len(calls))), calls, strict=True))
         for k, call in enumerate(calls):
             text = text.replace(call, f"({_NUMBER.format(k)})")
             asked = model.quantities.find_of_motion(call)
@@ -290,6 +305,12 @@ class _NumberMisses(Misses):
     def count(self) -> int:
         """One."""
         return 1
+
+    def exact(self, motion: Motion) -> float:
+        """See :meth:`Misses.exact`."""
+        known = {name: np.array(motion.value(call)) for name, call in self.calls.items()}
+        jets = {name: Jet(value, _ZERO, _ZERO) for name, value in known.items()}
+        return float(evaluate(self.node, jets, self.angle).v)
 
     def values(self, found: LanePositions) -> tuple[Array, Array]:
         """See :meth:`Misses.values`."""

@@ -121,6 +121,7 @@ def locate_rows(
 
 def _places_within(rows: MotionRows, far: float) -> Places:
     """Where further rows are wanted, so that none is farther from the next one."""
+    assert rows.joined is not None
     parts = np.where(rows.joined, np.ceil(np.abs(np.diff(rows.input)) / far - EQUAL_ROWS), 1.0)
     more = np.maximum(parts.astype(np.intp) - 1, 0)
     row = np.repeat(np.arange(len(more)), more)
