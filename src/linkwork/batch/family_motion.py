@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections import Counter
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, replace
@@ -11,12 +10,11 @@ from typing import Any
 
 import numpy as np
 
+from linkwork.batch.closer_rows import closer_rows
 from linkwork.batch.design_efforts import design_efforts
-from linkwork.batch.design_sweep import design_rows
 from linkwork.batch.design_values import DesignValues
 from linkwork.batch.designs import Designs
 from linkwork.batch.limits import FamilyLimits
-from linkwork.batch.located_extremes import step_of
 from linkwork.batch.located_numbers import located_number
 from linkwork.batch.rates import (
     DesignEvidence,
@@ -26,31 +24,24 @@ from linkwork.batch.rates import (
     design_speeds,
 )
 from linkwork.batch.rows import DesignRows
-from linkwork.batch.single_sweep import message_single, with_table
-from linkwork.foundation.angles import FULL_TURN
+from linkwork.batch.single_sweep import message_single
 from linkwork.foundation.arrays import Array, BoolArray, ComplexArray, StatusArray
 from linkwork.foundation.certification import Certification
-from linkwork.foundation.errors import (
-    InputError,
-    UnknownNameError,
-    choices,
-)
+from linkwork.foundation.errors import InputError, UnknownNameError, choices
 from linkwork.foundation.internal import internal
 from linkwork.foundation.names import find_spelling
 from linkwork.foundation.optional_packages import installed_with
-from linkwork.foundation.rounding import EQUAL_ROWS
 from linkwork.foundation.status import Status
 from linkwork.motion.leading_input import leading_input
 from linkwork.results.quantities.asked import Asked, AskedOfMotion, Group
 from linkwork.results.quantities.registry import Quantities
-from linkwork.results.quantity import Kind, Rate
+from linkwork.results.quantity import Rate
 from linkwork.results.series import Series
 
 __all__ = ["FamilyMotion"]
 
 _MOST_BYTES = 4 << 30  # limit for labelled arrays requested without names
 _EVIDENCE = ("residual", "condition", "radius")  # names of the evidence of rows
-_STEP = FULL_TURN / 72  # between rows [rad, or parts of the range]: all smooth extremes are seen
 _NEAR = 1 << 16  # positions whose rates are computed at a time: temporaries fit into the cache
 
 
@@ -258,22 +249,15 @@ class FamilyMotion:
         """A number (D,) that follows from the values of a quantity (D, R) alone; extremes are
         located between the rows.
         """
-        if not asked.quantity.sides or self._closer is None:
-            return located_number(self.designs, self.rows, asked, value, self.threads)
-        return self._closer.number(asked, self._closer[asked.of.name])
+        own = self._closer if asked.quantity.sides else self
+        value = value if own.rows is self.rows else own[asked.of.name]
+        return located_number(own.designs, own.rows, asked, value, self.threads)
 
     @cached_property
-    def _closer(self) -> FamilyMotion | None:
-        """The motions at rows so close that they show all extremes, if these are farther apart."""
-        base = self.designs.base
-        kind = Kind(base.equations.inputs[leading_input(base.rows)[0]].kind)
-        parts = math.ceil(step_of(self.leading, kind) / _STEP - EQUAL_ROWS)
-        if parts < 2:
-            return None
-        designs = replace(self.designs, base=with_table(base, base, parts))
-        rows = design_rows(designs, certify=False, threads=self.threads)
-        inputs = designs.base.rows_in_file_units
-        return FamilyMotion(designs=designs, inputs=inputs, rows=rows, threads=self.threads)
+    def _closer(self) -> FamilyMotion:
+        """The motions at rows so close that they show all extremes."""
+        designs, rows = closer_rows(self.designs, self.rows, self.threads)
+        return replace(self, designs=designs, inputs=designs.base.rows_in_file_units, rows=rows)
 
     def trace(self, point: str) -> ComplexArray:
         """The path of a point as x + iy, (D, R); ``trace("B.velocity")`` is its velocity."""
@@ -323,8 +307,7 @@ class FamilyMotion:
     @property
     def found(self) -> BoolArray:
         """Whether a row has a position, (D, R)."""
-        found: BoolArray = np.isin(self.rows.status.T, Status.CONVERGED.code)
-        return found
+        return np.asarray(np.isin(self.rows.status.T, Status.CONVERGED.code))
 
     @property
     def certification(self) -> StatusArray:
