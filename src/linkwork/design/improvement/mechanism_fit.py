@@ -23,7 +23,7 @@ __all__ = ["fit_numbers", "misses_before", "path_misses"]
 _STEPS = (60, 200, 200)  # of all lanes, then of the better half
 _BOUND_STEPS = (60,) * 7  # the same; after each the shifts of bounds change
 _POWER_STEPS = 60
-_CORRECTIONS, _CORRECTION_STEPS = 8, 20
+_CORRECTIONS, _CORRECTION_STEPS = 14, 20
 _ALL = 64  # so few lanes all go on, and are left of an interrupted fit
 
 
