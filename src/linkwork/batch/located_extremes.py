@@ -19,7 +19,7 @@ from linkwork.results.quantity import Kind
 __all__ = ["Peaks", "highest_values", "interpolated_extremes", "peaks_of", "step_of"]
 
 _ROWS = 9  # of a polynomial
-_PASSES = 8
+_PASSES, _BOLD = 40, 4  # of which the first solve where polynomials are largest
 _SOME = 24
 _POLE = 1e3  # times the values of rows: unless it is exact, there is a pole and no extreme
 _SHARP = 2.0  # of the range of values: how much an extreme may bend per step squared
@@ -95,29 +95,38 @@ def highest_values(
     """
     x, y = at[peaks.window], side * value[peaks.design[:, None], peaks.window]
     step = np.abs(np.diff(at)).min()
-    each, highest, most = np.arange(len(x)), y.max(axis=1), _POLE * np.abs(y).max(axis=1)
-    for _ in range(_PASSES):
-        top = y.argmax(axis=1)
-        here, best = x[each, top], y[each, top]
-        low = np.where(x < here[:, None], x, -np.inf).max(axis=1)
-        high = np.where(x > here[:, None], x, np.inf).min(axis=1)
+    highest, most = y.max(axis=1), _POLE * np.abs(y).max(axis=1)
+    left, exact = np.arange(len(x)), np.zeros(len(x), dtype=bool)
+    for k in range(_PASSES):
+        own, size = x[left], np.abs(y[left]).max(axis=1)
+        each, top = np.arange(len(left)), y[left].argmax(axis=1)
+        here, best = own[each, top], y[left, top]
+        low = np.where(own < here[:, None], own, -np.inf).max(axis=1)
+        high = np.where(own > here[:, None], own, np.inf).min(axis=1)
         low, high = np.where(np.isinf(low), here, low), np.where(np.isinf(high), here, high)
         with np.errstate(all="ignore"):
-            t, peak, term = interpolated_peaks(x, y, low, high, here)
-        exact = term <= _EXACT * np.abs(y).max(axis=1)
-        highest = np.where(exact, np.fmax(peak, best), best)
-        which = np.flatnonzero(~exact & (np.abs(t[:, None] - x).min(axis=1) > _SAME_PLACE * step))
-        if not len(which):
-            break
-        found = solve(which, t[which])
+            t, peak, term = interpolated_peaks(own, y[left], low, high, here)
+        exact[left] = known = term <= _EXACT * size
+        highest[left] = np.where(known, np.fmax(peak, best), best)
+        # next to a sharp extreme or a pole steps are halved until polynomials are exact
+        middle = 0.5 * (here + np.where(high - here > here - low, high, low))
+        t = np.where(_is_new(t, own, step) & (k < _BOLD), t, middle)
+        open_ones = ~known & _is_new(t, own, step)
+        left, t = left[open_ones], t[open_ones]
+        found = solve(left, t) if len(left) else t
         good = np.isfinite(found)
-        which, found = which[good], found[good]
-        if not len(which):
+        left, t = left[good], t[good]
+        if not len(left):
             break
-        away = np.abs(x[which] - t[which, None]).argmax(axis=1)
-        x[which, away], y[which, away] = t[which], found
+        away = np.abs(x[left] - t[:, None]).argmax(axis=1)
+        x[left, away], y[left, away] = t, found[good]
     highest = np.fmax(highest, y.max(axis=1))
     return np.where((highest > most) & ~exact, np.inf, highest)
+
+
+def _is_new(t: Array, x: Array, step: float) -> BoolArray:
+    """Whether places (L,) are none of those that are solved, (L, m)."""
+    return np.asarray(np.abs(t[:, None] - x).min(axis=1) > _SAME_PLACE * step)
 
 
 def interpolated_extremes(

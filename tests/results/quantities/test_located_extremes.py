@@ -305,3 +305,13 @@ step = {step}
     most = float(max(coupler(near).max(), coupler(-near).max()))
     # cosines of angles near 180 degrees are rounded
     assert mechanism.sweep().value("max(q)") == pytest.approx(most, abs=1e-5)
+
+
+@pytest.mark.parametrize("step", [1.0, 10.0, 60.0])
+def test_sharp_extremes_of_designs_are_no_poles_and_poles_are_infinite(step: float) -> None:
+    text = '[outputs]\nsharp = "1/((d - 150)^2 + 1e-3)"\npole = "1/(d - 150)"\n'
+    mechanism = lw.loads(SLIDER.format(step=step) + text)
+    family = mechanism.family({"c": [52.0, 51.0]}).sweep()
+    assert family.value("max(sharp)") == pytest.approx([1e3, 1e3], rel=1e-11)
+    assert mechanism.sweep().value("max(sharp)") == pytest.approx(1e3, rel=1e-11)
+    assert (family.value("max(pole)") == math.inf).all()
