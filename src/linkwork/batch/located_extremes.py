@@ -19,11 +19,13 @@ from linkwork.results.quantity import Kind
 __all__ = ["Peaks", "highest_values", "interpolated_extremes", "peaks_of", "step_of"]
 
 _ROWS = 9  # of a polynomial
-_PASSES, _BOLD = 40, 4  # of which the first solve where polynomials are largest
+_PASSES, _BOLD, _SURE = 80, 4, 40  # the first solve where polynomials are largest; late ones tell
+# poles
 _SOME = 24
 _POLE = 1e3  # times the values of rows: unless it is exact, there is a pole and no extreme
 _SHARP = 2.0  # of the range of values: how much an extreme may bend per step squared
 _EXACT = 1e-12  # of the values: what the last row adds, ten times what the next one would
+_ROUNDED = 1e-11  # the same at a place that is solved: values are rounded
 _SAME_PLACE = 1e-6  # of a step: a place so near to a solved one has the same value to rounding
 
 
@@ -106,12 +108,14 @@ def highest_values(
         low, high = np.where(np.isinf(low), here, low), np.where(np.isinf(high), here, high)
         with np.errstate(all="ignore"):
             t, peak, term = interpolated_peaks(own, y[left], low, high, here)
-        exact[left] = known = term <= _EXACT * size
+        near = np.abs(t[:, None] - own).min(axis=1) <= _SAME_PLACE * step
+        exact[left] = known = term <= np.where(near, _ROUNDED, _EXACT) * size
         highest[left] = np.where(known, np.fmax(peak, best), best)
         # next to a sharp extreme or a pole steps are halved until polynomials are exact
         middle = 0.5 * (here + np.where(high - here > here - low, high, low))
-        t = np.where(_is_new(t, own, step) & (k < _BOLD), t, middle)
-        open_ones = ~known & _is_new(t, own, step)
+        t = np.where(near | (k >= _BOLD), middle, t)
+        open_ones = ~known & ((best <= most[left]) | (k < _SURE))
+        open_ones &= np.abs(t - here) > 4.0 * EPSILON * np.abs(here)
         left, t = left[open_ones], t[open_ones]
         found = solve(left, t) if len(left) else t
         good = np.isfinite(found)
@@ -122,11 +126,6 @@ def highest_values(
         x[left, away], y[left, away] = t, found[good]
     highest = np.fmax(highest, y.max(axis=1))
     return np.where((highest > most) & ~exact, np.inf, highest)
-
-
-def _is_new(t: Array, x: Array, step: float) -> BoolArray:
-    """Whether places (L,) are none of those that are solved, (L, m)."""
-    return np.asarray(np.abs(t[:, None] - x).min(axis=1) > _SAME_PLACE * step)
 
 
 def interpolated_extremes(

@@ -315,3 +315,17 @@ def test_sharp_extremes_of_designs_are_no_poles_and_poles_are_infinite(step: flo
     assert family.value("max(sharp)") == pytest.approx([1e3, 1e3], rel=1e-11)
     assert mechanism.sweep().value("max(sharp)") == pytest.approx(1e3, rel=1e-11)
     assert (family.value("max(pole)") == math.inf).all()
+
+
+@pytest.mark.parametrize("step", [1.0, 10.0, 30.0])
+def test_extremes_at_corners_between_rows_are_exact(step: float) -> None:
+    text = '[outputs]\nfar = "-abs(d - 150.123)"\nlower = "min(sin(θ2 - 17.3), cos(θ2 - 5.1))"\n'
+    mechanism = lw.loads(SLIDER.format(step=step) + text)
+    # the sines cross half-way between their phases
+    expected = math.sin(math.radians(0.5 * (17.3 + 90.0 + 5.1) - 17.3))
+    motion, family = mechanism.sweep(), mechanism.family({"c": [52.0, 51.0]}).sweep()
+    assert motion.value("max(far)") == pytest.approx(0.0, abs=1e-9)
+    assert motion.value("max(lower)") == pytest.approx(expected, rel=1e-11)
+    assert family.value("max(far)") == pytest.approx([0.0, 0.0], abs=1e-8)
+    # polynomials across a corner are compared by their last terms
+    assert family.value("max(lower)") == pytest.approx([expected] * 2, rel=1e-9)

@@ -77,7 +77,13 @@ def _zeros(value: Array, ends: _Ends, slopes: _Ends, smooth: BoolArray) -> Place
     own = (ends[0][row], ends[1][row]), (slopes[0][row], slopes[1][row])
     part = roots_of_cubics(*own, _SAMPLES[falls], _SAMPLES[falls + 1])
     middle = np.flatnonzero(poor)
-    return joined_places((row, part), (middle, np.full(len(middle), 0.5)))
+    corner = np.flatnonzero(poor & (ends[0] > 0.0) & (ends[1] < 0.0))
+    # where the tangents of both ends meet
+    up, down = ends[0][corner], ends[1][corner]
+    meet = (np.diff(value)[corner] - down) / (up - down)
+    return joined_places(
+        (row, part), (middle, np.full(len(middle), 0.5)), (corner, np.clip(meet, 0.0, 1.0))
+    )
 
 
 def roots_of_cubics(ends: _Ends, slopes: _Ends, low: Array, high: Array) -> Array:
