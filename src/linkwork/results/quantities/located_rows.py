@@ -16,7 +16,7 @@ from linkwork.results.quantities.extreme_places import joined_places
 
 __all__ = ["Between", "LocatedRows", "columns_of", "locate_rows"]
 
-_MOST_PASSES = 16
+_MOST_PASSES, _SHARP = 16, 40  # the latter for extremes that are no poles so far
 _POLE = 1e3  # times the values of the table: there may be a pole instead of an extreme,
 _GROWS = 0.1  # of the value, where it still changes so much up to the nearest row
 _AT_ROW = 1e-12  # of the input: places so near to a row are that row
@@ -89,7 +89,10 @@ def locate_rows(
     row, part = _places_within(rows, between.far)
     if any(each.word == asked.of.own.name for each in asked.names.further):
         row, part = joined_places((row, part), _places_of(rows, between.switches))
-    for k in range(_MOST_PASSES):
+    sides = asked.quantity.sides
+    for k in range(_SHARP if sides else _MOST_PASSES):
+        if k == _MOST_PASSES and any(_poles(rows, side, most) for side in sides):
+            break
         if k or not len(row):
             row, part = places(rows, asked.numbers)
         step = np.abs(rows.input[row + 1] - rows.input[row])
@@ -111,7 +114,7 @@ def locate_rows(
         before = np.insert(before, behind, before[row[there]])
         further.append(more)
         count += len(at)
-    poles = [k for side in asked.quantity.sides for k in _poles(rows, side, most)]
+    poles = [k for side in sides for k in _poles(rows, side, most)]
     if poles:
         value = rows.value.copy()
         value[poles] *= np.inf
