@@ -20,6 +20,7 @@ __all__ = ["goal_campaign"]
 
 _STARTS, _SPREAD = 3, 0.1
 _MET = 1e-9  # of the wanted value
+_SAME = 1e-10  # of the wanted value, the miss or the file unit
 _EQUAL = 1e-5  # of the longest path: branches that are no farther apart
 _ROUNDING = 1e-9  # of the ends of branches [file units]
 
@@ -51,6 +52,9 @@ def goal_campaign(part: int) -> tuple[Counter[str], list[str]]:
             counts["not sound"] += 1
             continue
         counts["sound"] += 1
+        told, motion = design.goals[of], lw.api.Mechanism(design.description).sweep()
+        if not abs(told - abs(motion.value(of) - target)) <= _SAME * max(1.0, abs(target), told):
+            false.append(f"part {part}: {name}, {of} = {target!r}, not missed by {told!r}")
         if not _passes(lw.api.Mechanism(design.description)):
             numbers = dict(design.numbers)
             false.append(f"part {part}: {name}, {of} = {target!r} ends in between: {numbers}")

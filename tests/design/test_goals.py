@@ -210,3 +210,36 @@ def test_a_goal_that_numbers_do_not_change_at_the_start_alone_is_none_without_ef
 def test_rows_whole_turns_apart_differ_in_geared_mechanisms() -> None:
     goal = {"of": "max(B.x)", "target": 100.0}
     assert lw.example("belt-drive").improve(goal, vary=["A B", "O4 B"], starts=2)
+
+
+@pytest.mark.parametrize(
+    "goal",
+    [
+        {"of": "stroke(rocker)", "target": 170.0},  # nearly a change point: extremes are sharp
+        {"of": "path_length(B)", "target": 300.0},
+        {"of": "stroke(rocker) / max(coupler)", "target": 1.6},
+    ],
+)
+def test_what_a_design_says_of_a_number_is_what_its_motion_has(goal: dict[str, Any]) -> None:
+    bar = lw.example("four-bar")
+    of = str(goal["of"])
+    for design in bar.improve(goal, starts=2):
+        motion = lw.api.Mechanism(design.description).sweep()
+        parts = [motion.value(name) for name in of.split(" / ")]
+        miss = abs(parts[0] / parts[1] if len(parts) == 2 else parts[0]) - goal["target"]
+        # certified positions are rounded once more
+        assert design.goals[of] == pytest.approx(abs(miss), abs=1e-11 * goal["target"])
+        assert abs(miss) <= 1e-10 * goal["target"] or not design.sound
+
+
+def test_a_goal_that_is_missed_says_by_how_much_though_rows_are_far_apart() -> None:
+    crank = lw.example("slider-crank").changed(
+        inputs=lw.Input(link="crank", start=0, stop=360, step=30)
+    )
+    goals = [{"of": "stroke(d)", "target": 90.0}, {"of": "max(d)", "target": 130.0}]
+    for design in crank.improve(goals, vary=["O2 A"], starts=2):
+        motion = lw.api.Mechanism(design.description).sweep(start=0, stop=360, step=1)
+        misses = {name: abs(motion.value(name) - w) for name, w in
+                  (("stroke(d)", 90.0), ("max(d)", 130.0))}  # fmt: skip
+        assert max(misses.values()) > 1.0
+        assert dict(design.goals) == pytest.approx(misses, abs=1e-9)

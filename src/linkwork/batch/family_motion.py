@@ -4,12 +4,13 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Iterable, Iterator, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Any
 
 import numpy as np
 
+from linkwork.batch.closer_rows import closer_rows
 from linkwork.batch.design_efforts import design_efforts
 from linkwork.batch.design_values import DesignValues
 from linkwork.batch.designs import Designs
@@ -26,11 +27,7 @@ from linkwork.batch.rows import DesignRows
 from linkwork.batch.single_sweep import message_single
 from linkwork.foundation.arrays import Array, BoolArray, ComplexArray, StatusArray
 from linkwork.foundation.certification import Certification
-from linkwork.foundation.errors import (
-    InputError,
-    UnknownNameError,
-    choices,
-)
+from linkwork.foundation.errors import InputError, UnknownNameError, choices
 from linkwork.foundation.internal import internal
 from linkwork.foundation.names import find_spelling
 from linkwork.foundation.optional_packages import installed_with
@@ -252,7 +249,15 @@ class FamilyMotion:
         """A number (D,) that follows from the values of a quantity (D, R) alone; extremes are
         located between the rows.
         """
-        return located_number(self.designs, self.rows, asked, value, self.threads)
+        own = self._closer if asked.quantity.sides else self
+        value = value if own.rows is self.rows else own[asked.of.name]
+        return located_number(own.designs, own.rows, asked, value, self.threads)
+
+    @cached_property
+    def _closer(self) -> FamilyMotion:
+        """The motions at rows so close that they show all extremes."""
+        designs, rows = closer_rows(self.designs, self.rows, self.threads)
+        return replace(self, designs=designs, inputs=designs.base.rows_in_file_units, rows=rows)
 
     def trace(self, point: str) -> ComplexArray:
         """The path of a point as x + iy, (D, R); ``trace("B.velocity")`` is its velocity."""
@@ -302,8 +307,7 @@ class FamilyMotion:
     @property
     def found(self) -> BoolArray:
         """Whether a row has a position, (D, R)."""
-        found: BoolArray = np.isin(self.rows.status.T, Status.CONVERGED.code)
-        return found
+        return np.asarray(np.isin(self.rows.status.T, Status.CONVERGED.code))
 
     @property
     def certification(self) -> StatusArray:

@@ -19,11 +19,13 @@ from linkwork.results.quantity import Kind
 __all__ = ["Peaks", "highest_values", "interpolated_extremes", "peaks_of", "step_of"]
 
 _ROWS = 9  # of a polynomial
-_PASSES = 8
+_PASSES, _BOLD, _SURE = 80, 4, 40  # the first solve where polynomials are largest; late ones tell
+# poles
 _SOME = 24
-_POLE = 1e3  # times the values of rows: there is a pole, not an extreme
+_POLE = 1e3  # times the values of rows: unless it is exact, there is a pole and no extreme
 _SHARP = 2.0  # of the range of values: how much an extreme may bend per step squared
 _EXACT = 1e-12  # of the values: what the last row adds, ten times what the next one would
+_ROUNDED = 1e-11  # the same at a place that is solved: values are rounded
 _SAME_PLACE = 1e-6  # of a step: a place so near to a solved one has the same value to rounding
 
 
@@ -95,29 +97,35 @@ def highest_values(
     """
     x, y = at[peaks.window], side * value[peaks.design[:, None], peaks.window]
     step = np.abs(np.diff(at)).min()
-    each, highest, size = np.arange(len(x)), y.max(axis=1), np.abs(y).max(axis=1)
-    for _ in range(_PASSES):
-        top = y.argmax(axis=1)
-        here, best = x[each, top], y[each, top]
-        low = np.where(x < here[:, None], x, -np.inf).max(axis=1)
-        high = np.where(x > here[:, None], x, np.inf).min(axis=1)
+    highest, most = y.max(axis=1), _POLE * np.abs(y).max(axis=1)
+    left, exact = np.arange(len(x)), np.zeros(len(x), dtype=bool)
+    for k in range(_PASSES):
+        own, size = x[left], np.abs(y[left]).max(axis=1)
+        each, top = np.arange(len(left)), y[left].argmax(axis=1)
+        here, best = own[each, top], y[left, top]
+        low = np.where(own < here[:, None], own, -np.inf).max(axis=1)
+        high = np.where(own > here[:, None], own, np.inf).min(axis=1)
         low, high = np.where(np.isinf(low), here, low), np.where(np.isinf(high), here, high)
         with np.errstate(all="ignore"):
-            t, peak, term = interpolated_peaks(x, y, low, high, here)
-        exact = term <= _EXACT * size
-        highest = np.where(exact, np.fmax(peak, best), best)
-        which = np.flatnonzero(~exact & (np.abs(t[:, None] - x).min(axis=1) > _SAME_PLACE * step))
-        if not len(which):
-            break
-        found = solve(which, t[which])
+            t, peak, term = interpolated_peaks(own, y[left], low, high, here)
+        near = np.abs(t[:, None] - own).min(axis=1) <= _SAME_PLACE * step
+        exact[left] = known = term <= np.where(near, _ROUNDED, _EXACT) * size
+        highest[left] = np.where(known, np.fmax(peak, best), best)
+        # next to a sharp extreme or a pole steps are halved until polynomials are exact
+        middle = 0.5 * (here + np.where(high - here > here - low, high, low))
+        t = np.where(near | (k >= _BOLD), middle, t)
+        open_ones = ~known & ((best <= most[left]) | (k < _SURE))
+        open_ones &= np.abs(t - here) > 4.0 * EPSILON * np.abs(here)
+        left, t = left[open_ones], t[open_ones]
+        found = solve(left, t) if len(left) else t
         good = np.isfinite(found)
-        which, found = which[good], found[good]
-        if not len(which):
+        left, t = left[good], t[good]
+        if not len(left):
             break
-        away = np.abs(x[which] - t[which, None]).argmax(axis=1)
-        x[which, away], y[which, away] = t[which], found
+        away = np.abs(x[left] - t[:, None]).argmax(axis=1)
+        x[left, away], y[left, away] = t, found[good]
     highest = np.fmax(highest, y.max(axis=1))
-    return np.where(highest > _POLE * size, np.inf, highest)
+    return np.where((highest > most) & ~exact, np.inf, highest)
 
 
 def interpolated_extremes(

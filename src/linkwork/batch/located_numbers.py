@@ -23,6 +23,7 @@ __all__ = ["located_number"]
 
 _NEWTON_STEPS = 8
 _LAST = 1e-8  # weighted: a step that leaves an error of its square
+_REACH = 1.0  # weighted, in addition to the change over two rows
 _MOVED = 0.1  # weighted: further from the row's parabola a position may be on another branch
 
 
@@ -114,8 +115,11 @@ def _rows_beside(
         np.linalg.slogdet(np.nan_to_num(_equations(designs, lanes, x)[1][:, :, :n]))[0]
         for x in (v, known)
     ]
-    moved = np.abs((v[:, :n] - guess) / table.variable_scale[:n]).max(axis=1)
+    scale, change = table.variable_scale[:n], np.nan_to_num(np.abs(after - before))
+    moved = np.abs((v[:, :n] - guess) / scale).max(axis=1)
     good = (size <= _LAST) & (moved <= _MOVED) & (signs[0] == signs[1])
+    # on another turn it would be farther
+    good &= (np.abs(v[:, :n] - known[:, :n]) <= _REACH * scale + change).all(axis=1)
     found = DesignRows.blank(n, 1, len(lanes), certify=False, falling=False)
     found.v[:, 0] = np.where(good[:, None], v[:, :n], np.nan).T
     found.status[0] = np.where(good, Status.CONVERGED.code, Status.LOST.code)

@@ -24,7 +24,7 @@ from linkwork.motion.sweeping import sweep_rows
 from linkwork.numerics.rows import SolvedRows
 from linkwork.results.motion import Motion
 
-__all__ = ["leave_open", "message_single", "single_motion", "sweep_single"]
+__all__ = ["leave_open", "message_single", "single_motion", "sweep_single", "with_table"]
 
 
 def _at_shared_inputs(designs: Designs, k: int) -> Model:
@@ -33,17 +33,19 @@ def _at_shared_inputs(designs: Designs, k: int) -> Model:
     # a range given by formulas of dimensions can differ from design to design
     if np.array_equal(model.rows_in_file_units, base.rows_in_file_units):
         return model
-    inputs = tuple(_with_plain_range(base, which) for which in base.description.inputs)
-    description = replace(model.description, inputs=inputs)
-    return Model(description, model.equations, model.compiled, model.skeleton, model.branch)
+    return with_table(model, base)
 
 
-def _with_plain_range(base: Model, which: Input) -> Input:
-    start, stop, step = (
-        None if value is None else base.description.numbers(value)
-        for value in (which.start, which.stop, which.step)
-    )
-    return replace(which, start=start, stop=stop, step=step)
+def with_table(model: Model, base: Model, parts: int = 1) -> Model:
+    """A mechanism with the table of another one, whose steps are divided into parts."""
+    inputs = tuple(_with_plain_range(base, which, parts) for which in base.description.inputs)
+    return replace(model, description=replace(model.description, inputs=inputs))
+
+
+def _with_plain_range(base: Model, which: Input, parts: int) -> Input:
+    rows = base.description.rows(which).tolist()
+    step = (rows[-1] - rows[0]) / max(1, parts * (len(rows) - 1))
+    return replace(which, start=rows[0], stop=rows[-1], step=step or None)
 
 
 def leave_open(designs: Designs, which: IndexArray, found: DesignRows) -> None:

@@ -187,6 +187,11 @@ class _OnTrack:
         """None: limits are those of quantities of positions alone."""
         return np.zeros(0)
 
+    @property
+    def far(self) -> float:
+        """Tracks show their extremes themselves."""
+        return np.inf
+
     def __call__(self, row: IndexArray, at: Array) -> _TrackRows:
         """At the values t (B,)."""
         rows = rows_on_track(self.drive.solver, self.drive.path, self.track, at)

@@ -7,6 +7,7 @@ from functools import cached_property
 
 import numpy as np
 
+from linkwork.foundation.angles import FULL_TURN
 from linkwork.foundation.arrays import Array, BoolArray, IndexArray
 from linkwork.foundation.certification import Certification
 from linkwork.foundation.status import CONVERGED, Status
@@ -23,10 +24,16 @@ from linkwork.numerics.continuation.branch_tracking import (
 from linkwork.numerics.newton import unlimited
 from linkwork.numerics.rows import SolvedRows
 from linkwork.results.motion import Motion
+from linkwork.results.quantity import Kind
 
 __all__ = ["RowsBetween"]
 
 _MOVED = 0.1  # weighted: further from the interpolation a position may be on another branch
+_REACH = 1.0, 0.5  # weighted, and of what changes between two rows: how far positions between
+# them may be from the straight line; on another turn they are farther
+_PARTS = 72  # of a turn or of the table: the steps that show all extremes of smooth quantities,
+_OF_PIECE = 5  # parts of a piece of a cam or law,
+_MOST_PARTS = 3600  # but no more of the table
 _SAME_TURN = 1.0  # of the leading input: rows named whole turns away differ by more
 
 
@@ -84,6 +91,23 @@ class RowsBetween:
             return self(np.minimum(order[k], order[k + 1]), places)
 
         return self.model.beside_switches(at, rising)
+
+    @cached_property
+    def far(self) -> float:
+        """The largest step that shows all extremes of smooth quantities [rad or length]."""
+        model, span = self.model, float(np.ptp(self._places[1]))
+        description, numbers = model.description, model.description.numbers
+        kind = Kind(model.equations.inputs[self._drive.lead].kind)
+        if description.timed:
+            laws = [which.law for which in description.inputs if isinstance(which.law, tuple)]
+            pieces = [segment.duration(numbers) for law in laws for segment in law]
+        else:
+            cams = [getattr(part, "segments", ()) for part in getattr(description, "parts", ())]
+            unit = description.angle.radians if kind is Kind.ANGLE else np.inf
+            pieces = [numbers(segment.over) * unit for cam in cams for segment in cam]
+        whole = FULL_TURN if kind is Kind.ANGLE else span
+        least = max(min(pieces, default=np.inf) / _OF_PIECE, span / _MOST_PARTS)
+        return min(whole / _PARTS, least)
 
     def __call__(self, row: IndexArray, at: Array) -> Motion:
         """Positions at leading inputs (K,) between rows (K,) and the next ones.
@@ -152,6 +176,9 @@ class RowsBetween:
         moved = np.abs((done.v - guess) / solver.variable_scale).max(axis=1)
         good = (done.status == CONVERGED) & (moved <= _MOVED)
         good &= (rates.orientation == expected).all(axis=1)
+        away = np.abs(done.v - left.v - (here - t[row])[:, None] / h * (right.v - left.v))
+        scale = solver.variable_scale
+        good &= (away <= _REACH[0] * scale + _REACH[1] * np.abs(right.v - left.v)).all(axis=1)
         return SolvedRows(
             v=done.v,
             first=rates.first,

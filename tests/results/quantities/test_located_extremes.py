@@ -174,3 +174,158 @@ def test_random_mechanisms_have_the_extremes_of_closed_forms_and_of_finer_tables
     counts, false = extreme_campaign(0, 4)
     assert false == []
     assert counts["numbers of designs with two extremes between rows"] == 0
+
+
+CAM = """
+format = 1
+[points]
+O = [0, 0]
+S = [0, -50]
+T = [0, 100]
+P = [0, 40]
+[links]
+ground = ["O", "S", "T"]
+disc = ["O"]
+follower = ["P"]
+[[sliders]]
+name = "s"
+link = "follower"
+points = ["P"]
+angle = 90
+on = "ground"
+line = ["S", "T"]
+[[cams]]
+name = "cam"
+cam = "disc"
+center = "O"
+slider = "s"
+base = 40
+segments = [
+  {{ law = "cycloidal", over = {rise}, lift = 10 }},
+  {{ law = "dwell", over = 101 }},
+  {{ law = "cycloidal", over = {rise}, lift = -10 }},
+  {{ law = "dwell", over = {rest} }},
+]
+[input]
+link = "disc"
+from = {start}
+to = {stop}
+step = {step}
+"""
+
+
+def cam(rise: float, step: float, start: float = 0.0) -> lw.api.Mechanism:
+    rest = 259.0 - 2.0 * rise
+    return lw.loads(CAM.format(rise=rise, rest=rest, step=step, start=start, stop=start + 360.0))
+
+
+@pytest.mark.parametrize("step", [30.0, 60.0, 90.0, 180.0])
+def test_extremes_are_found_where_the_quantity_is_zero_in_all_rows(step: float) -> None:
+    wave = '[outputs]\nw = "c/52*sin(6*θ2)"\n'
+    mechanism = lw.loads(SLIDER.format(step=step) + wave)
+    motion = mechanism.sweep()
+    assert np.abs(motion["w"]).max() < 1e-12
+    assert motion.value("max(w)") == pytest.approx(1.0, rel=1e-13)
+    assert motion.value("stroke(w)") == pytest.approx(2.0, rel=1e-13)
+    assert mechanism.family({"c": [52.0, 26.0]}).sweep().value("stroke(w)") == pytest.approx(
+        [2.0, 1.0], rel=1e-12
+    )
+    # six equal extremes have no derivative
+    assert math.isnan(mechanism.sensitivity("max(w)")["c"])
+
+
+@pytest.mark.parametrize(("rise", "step"), [(8.0, 20.0), (8.0, 30.0), (1.5, 30.0), (1.5, 5.0)])
+def test_short_pieces_of_cams_between_rows_are_seen(rise: float, step: float) -> None:
+    motion = cam(rise, step, 259.0 - rise).sweep()
+    # the extremes of the cycloidal law
+    angle = math.radians(rise)
+    expected = {"stroke(s)": 10.0, "max(s.d1)": 20.0 / angle, "min(s.d1)": -20.0 / angle,
+                "max(s.d2)": 20.0 * math.pi / angle**2}  # fmt: skip
+    found = {name: motion.value(name) for name in expected}
+    assert found == pytest.approx(expected, rel=1e-9)
+
+
+def test_a_short_movement_between_two_rows_of_time_is_seen() -> None:
+    there, back = (
+        lw.LawSegment(law="3-4-5", over=t, by=s * 90) for t, s in ((0.04, 1), (0.05, -1))
+    )
+    rests = [lw.LawSegment(law="dwell", over=t) for t in (0.01, 0.9)]
+    law = (there, rests[0], back, rests[1])
+    coarse, fine = (
+        bar(1.0).changed(inputs=lw.Input(link="crank", law=law, start=0, stop=1, step=step)).sweep()
+        for step in (0.1, 0.001)
+    )
+    assert np.ptp(coarse["rocker"]) < 1e-9
+    for name in ("stroke(rocker)", "max(rocker.velocity)", "min(rocker.velocity)"):
+        assert coarse.value(name) == pytest.approx(fine.value(name), rel=1e-10)
+
+
+def test_an_extreme_just_before_the_last_row_is_found_by_values_alone() -> None:
+    masses = {"coupler": lw.Mass(mass=2.0, center=(60, 5), inertia=100.0)}
+    fine = bar(0.1, masses=masses)
+    highest = 0.1 * int(np.argmax(fine.sweep()["crank.effort"]))
+    for beyond in (0.05, 0.1, 0.7):
+        stop = highest + beyond
+        most, less = (
+            fine.sweep(start=stop - 60.0, stop=stop, step=step).value("max(crank.effort)")
+            for step in (0.1, 10.0)
+        )
+        assert less == pytest.approx(most, rel=1e-11)
+
+
+@pytest.mark.parametrize("step", [1.0, 30.0])
+def test_extremes_next_to_a_change_point_are_on_their_turn(step: float) -> None:
+    a, b, c, d = 1.0, 3.000001, 3.0, 1.000003
+    start = math.radians(120.0)
+    diagonal = d - a * np.exp(1j * start)
+
+    def coupler(u: np.ndarray) -> np.ndarray:
+        away = d - a * np.exp(1j * u)
+        size = np.abs(away)
+        turn = np.arccos((b**2 + size**2 - c**2) / (2.0 * b * size))
+        return np.asarray(np.degrees(np.angle(away) + turn))
+
+    q = float(coupler(np.array(start)))
+    p = math.degrees(float(np.angle(b * np.exp(1j * math.radians(q)) - diagonal)))
+    mechanism = lw.loads(f"""
+format = 1
+[loops]
+L = "{a}*e^(i*t) + {b}*e^(i*q) = {d} + {c}*e^(i*p)"
+[guess]
+t = 120
+q = {q!r}
+p = {p!r}
+[input]
+variable = "t"
+from = 0
+to = 360
+step = {step}
+""")
+    near = 10.0 ** np.linspace(-5.0, 0.0, 200_001)
+    most = float(max(coupler(near).max(), coupler(-near).max()))
+    # cosines of angles near 180 degrees are rounded
+    assert mechanism.sweep().value("max(q)") == pytest.approx(most, abs=1e-5)
+
+
+@pytest.mark.parametrize("step", [1.0, 10.0, 60.0])
+def test_sharp_extremes_of_designs_are_no_poles_and_poles_are_infinite(step: float) -> None:
+    text = '[outputs]\nsharp = "1/((d - 150)^2 + 1e-3)"\npole = "1/(d - 150)"\n'
+    mechanism = lw.loads(SLIDER.format(step=step) + text)
+    family = mechanism.family({"c": [52.0, 51.0]}).sweep()
+    assert family.value("max(sharp)") == pytest.approx([1e3, 1e3], rel=1e-11)
+    assert mechanism.sweep().value("max(sharp)") == pytest.approx(1e3, rel=1e-11)
+    assert (family.value("max(pole)") == math.inf).all()
+
+
+@pytest.mark.parametrize("step", [1.0, 10.0, 30.0])
+def test_extremes_at_corners_between_rows_are_exact(step: float) -> None:
+    text = '[outputs]\nfar = "-abs(d - 150.123)"\nlower = "min(sin(θ2 - 17.3), cos(θ2 - 5.1))"\n'
+    mechanism = lw.loads(SLIDER.format(step=step) + text)
+    # the sines cross half-way between their phases
+    expected = math.sin(math.radians(0.5 * (17.3 + 90.0 + 5.1) - 17.3))
+    motion, family = mechanism.sweep(), mechanism.family({"c": [52.0, 51.0]}).sweep()
+    assert motion.value("max(far)") == pytest.approx(0.0, abs=1e-9)
+    assert motion.value("max(lower)") == pytest.approx(expected, rel=1e-11)
+    assert family.value("max(far)") == pytest.approx([0.0, 0.0], abs=1e-8)
+    # polynomials across a corner are compared by their last terms
+    assert family.value("max(lower)") == pytest.approx([expected] * 2, rel=1e-9)

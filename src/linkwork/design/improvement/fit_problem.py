@@ -8,6 +8,8 @@ from functools import cached_property
 
 import numpy as np
 
+from linkwork.design.improvement.exact_numbers import ExactNumbers
+from linkwork.design.improvement.free_timing import own_inputs
 from linkwork.design.improvement.goals import Misses, PathGoal, goal_of
 from linkwork.design.improvement.kept_relations import Together
 from linkwork.design.improvement.lane_work import LaneWork
@@ -16,21 +18,17 @@ from linkwork.design.improvement.settings import Aid, Goal
 from linkwork.design.improvement.solved_lanes import SolvedLanes, inputs_away
 from linkwork.design.improvement.trade_off import Objectives, TradeOff, told_apart
 from linkwork.design.improvement.written_designs import DesignWriter
-from linkwork.foundation.angles import FULL_TURN
 from linkwork.foundation.arrays import Array, IndexArray
-from linkwork.foundation.rounding import EQUAL_ROWS
 from linkwork.foundation.sharing import cores, share_out
 from linkwork.mechanism.varied_number import VariedNumber
 from linkwork.motion.between_rows import between_rows
 from linkwork.motion.model import Model
-from linkwork.numerics.lane_bounds import Box, OwnVariables
+from linkwork.numerics.lane_bounds import Box
 from linkwork.numerics.lane_least_squares import LaneFit, Residuals, minimise, starts_of
 from linkwork.results.motion import Motion
-from linkwork.results.quantity import Kind
 
 __all__ = ["APPROACH", "FitProblem", "FittedNumbers", "Fitting"]
 
-_GAP = 1e-7  # between inputs of positions in order [rad or length]
 APPROACH = 4  # parts of the way from the mechanism to a start
 
 
@@ -137,7 +135,7 @@ class FitProblem:
         # limits between the rows of the table move with the numbers
         table = (np.asarray(motion.inputs[lead]) * scale)[motion.asked]
         there = np.asarray(motion.found[motion.asked])
-        self.own_variables = self._timing(table)
+        self.own_variables = own_inputs(path, model, table)
         self.writer = DesignWriter(model, given.numbers)
         self.goals = [goal_of(model, goal, table, there, scale) for goal in given.goals]
         self.points = None if path is None else self._rows(path.inputs)
@@ -146,6 +144,8 @@ class FitProblem:
         for misses in self.goals:
             if misses.at.tobytes() not in self.rows:
                 self.rows[misses.at.tobytes()] = self._rows(misses.at)
+        own = given.numbers, self.goals, self.rows
+        self.exact = ExactNumbers(self.writer, *own, there, lanes)
         self.shifts = [np.zeros((2, lanes, misses.count)) for misses in self.goals]
         self.new_shifts = [np.zeros_like(shift) for shift in self.shifts]
         self.power, self.largest = 1, np.ones(lanes)
@@ -199,21 +199,8 @@ class FitProblem:
             getattr(fit, name)[to] = getattr(fit, name)[of]
         for solved in self._solvers:
             solved.copy_lanes(of, to)
+        self.exact.errors[:, to] = self.exact.errors[:, of]
         self._reached[to] = True
-
-    def _timing(self, table: Array) -> OwnVariables:
-        """Where inputs of points with free timing may be: in the table, unless it is a turn."""
-        if self.path is None or self.path.timed:
-            return OwnVariables()
-        turns = self.model.equations.inputs[0].kind == Kind.ANGLE.value
-        least, most = float(table.min()), float(table.max())
-        if turns and most - least >= FULL_TURN * (1.0 - EQUAL_ROWS):
-            least, most = -np.inf, np.inf
-        if not self.path.ordered:
-            return OwnVariables(least=least, most=most)
-        gap = min(_GAP, 0.5 * (most - least) / len(self.path.places))
-        span = (FULL_TURN if turns else np.inf) - gap
-        return OwnVariables(least=least, most=most, in_order=True, gap=gap, span=span)
 
     def _rows(self, at: Array) -> SolvedLanes:
         """Lanes at inputs, begun between or at the nearest rows of the mechanism's motion."""
@@ -336,7 +323,8 @@ class FitProblem:
             kept.append((solved, positions[key], at))
         shared, shared_by_x = [np.zeros((count, 0))], [np.zeros((count, 0, parameters))]
         for k, misses in enumerate(self.goals):
-            own, slopes, new = misses.of(positions[misses.at.tobytes()], self.shifts[k][:, lanes])
+            given = self.exact.errors[k, lanes], self.shifts[k][:, lanes]
+            own, slopes, new = misses.of(positions[misses.at.tobytes()], *given)
             self.new_shifts[k][:, lanes] = new
             if not self.moved[k] > 0.0 and (there := np.isfinite(own)).any():
                 self.moved[k] = float(np.abs(slopes[there]).max())
@@ -354,6 +342,12 @@ class FitProblem:
         for solver, found, at in kept:
             solver.keep(found, x, at, lanes, result.total)
         return result
+
+    def correct(self, fit: LaneFit, lanes: IndexArray) -> IndexArray:
+        """Make goals of numbers of the motion exact; the lanes in which they were not."""
+        known = lanes[np.isfinite(fit.total[lanes])]
+        parts = self.work.parts(known) if len(known) else []
+        return self.exact.correct(self.given.all_numbers(fit.x), parts)
 
     def measured(self, fit: LaneFit, lanes: IndexArray) -> Residuals:
         """The misses of lanes without powers, weights and shifts."""
@@ -376,6 +370,7 @@ class FitProblem:
         """All lanes that are known, or the best ones, with their misses."""
         known = np.argsort(fit.total, kind="stable")[: max(1, np.isfinite(fit.total).sum())]
         known = np.sort(known[:most])
+        self.correct(fit, known)
         there = self.measured(fit, known)
         beyond = [misses.beyond(there.shared[:, own]) for misses, own in self._kept]
         fit = fit.take(known)

@@ -15,13 +15,30 @@ from linkwork.foundation.errors import InputError, UnknownNameError, choices
 from linkwork.foundation.names import find_spelling
 from linkwork.foundation.rounding import EQUAL_ROWS
 from linkwork.motion.model import Model
+from linkwork.numerics.lane_bounds import OwnVariables
 from linkwork.results.motion import Motion
 from linkwork.results.quantity import Kind
 
-__all__ = ["paths_of", "point_named"]
+__all__ = ["own_inputs", "paths_of", "point_named"]
 
 _SHARES = (0.1, 0.25, 0.5, 0.75, 1.0)  # of the path's length, for points along a part of it
 _SHIFTS = 36  # of the first point along the path
+_GAP = 1e-7  # between inputs of positions in order [rad or length]
+
+
+def own_inputs(path: PathGoal | None, model: Model, table: Array) -> OwnVariables:
+    """Where inputs of points with free timing may be: in the table, unless it is a turn."""
+    if path is None or path.timed:
+        return OwnVariables()
+    turns = model.equations.inputs[0].kind == Kind.ANGLE.value
+    least, most = float(table.min()), float(table.max())
+    if turns and most - least >= FULL_TURN * (1.0 - EQUAL_ROWS):
+        least, most = -np.inf, np.inf
+    if not path.ordered:
+        return OwnVariables(least=least, most=most)
+    gap = min(_GAP, 0.5 * (most - least) / len(path.places))
+    span = (FULL_TURN if turns else np.inf) - gap
+    return OwnVariables(least=least, most=most, in_order=True, gap=gap, span=span)
 
 
 def _freely_timed(

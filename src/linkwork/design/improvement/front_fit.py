@@ -108,6 +108,8 @@ class _Front:
             own = lanes[np.isfinite(self.fit.total[lanes]) | (k == 0)]
             if not len(own) or self.fit.interrupted:
                 break
+            if k == len(rounds) - 1:
+                self.problem.correct(self.fit, own)
             self.fit = self.problem.further(self.fit, own, steps)
         self.used = max(self.used, int(lanes.max(initial=-1)) + 1)
 

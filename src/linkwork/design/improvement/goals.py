@@ -29,13 +29,14 @@ from linkwork.foundation.arrays import AnyArray, Array, BoolArray, ComplexArray
 from linkwork.foundation.errors import InputError, UnknownNameError
 from linkwork.foundation.rounding import EQUAL_ROWS
 from linkwork.motion.model import Model
+from linkwork.results.motion import Motion
 from linkwork.results.quantities.asked import Asked, AskedOfMotion, Group
 from linkwork.results.quantities.definition import RowSlopes
 from linkwork.results.quantities.index import MOTION_QUANTITIES
 from linkwork.results.quantities.transmission import TRANSMISSION_ANGLE
 from linkwork.results.quantity import Kind
 
-__all__ = ["Misses", "PathGoal", "goal_of"]
+__all__ = ["Misses", "NumberMisses", "PathGoal", "goal_of"]
 
 _WORDS = "|".join(quantity.word for quantity in MOTION_QUANTITIES)
 _CALL = re.compile(rf"\b(?:{_WORDS})\s*\([^()]*\)")
@@ -140,10 +141,12 @@ class Misses(ABC):
         return np.where(away > _NONE * _margin(np.array([least, most])), away, 0.0)
 
     @np.errstate(all="ignore")  # where there is no position there is no number
-    def of(self, found: LanePositions, shift: Array) -> tuple[Array, Array, Array]:
-        """Weighted misses (D, K), by the numbers, and the new shifts of the bounds, (2, D, K)."""
-        value, by_x = self.values(found)
-        goal = self.goal
+    def of(self, found: LanePositions, error: Array, shift: Array) -> tuple[Array, Array, Array]:
+        """Weighted misses (D, K) of values less their error (D,), by the numbers, and the new
+        shifts of the bounds, (2, D, K).
+        """
+        (value, by_x), goal = self.values(found), self.goal
+        value = value - error[:, None]
         if not self.is_bound:
             wanted: Any = np.array(goal.values) if goal.values else goal.target
             away = value - wanted
@@ -207,7 +210,7 @@ def goal_of(model: Model, goal: Goal, table: Array, there: BoolArray, scale: flo
         return _RowMisses(model, goal, at)
     if goal.at:
         raise InputError(f'"{goal.of}" is a number of the whole motion: leave out at and values')
-    return _NumberMisses(model, goal, table, there, calls)
+    return NumberMisses(model, goal, table, there, calls)
 
 
 class _RowMisses(Misses):
@@ -237,8 +240,7 @@ class _RowMisses(Misses):
         else:
             jets = {name: Jet(value, _ZERO, _ZERO) for name, value in known.items()}
             total = evaluate(self.node, jets, self.angle).v
-        value, by_x = found.totals(rows, total)
-        return value, by_x
+        return found.totals(rows, total)
 
 
 class _TransmissionMisses(_RowMisses):
@@ -259,20 +261,19 @@ class _TransmissionMisses(_RowMisses):
         return self.between.extremes(value, by_x, value - least > most - value)
 
 
-class _NumberMisses(Misses):
+class NumberMisses(Misses):
     """A number of the motion, or a formula of such numbers."""
 
     def __init__(
         self, model: Model, goal: Goal, table: Array, there: BoolArray, calls: Sequence[str]
     ) -> None:
         text, self.there = goal.of, there
-        self.asked: dict[str, AskedOfMotion] = {}
-        for k, call in enumerate(calls):
-            text = text.replace(call, f"({_NUMBER.format(k)})")
-            asked = model.quantities.find_of_motion(call)
+        self.calls = {_NUMBER.format(k): call for k, call in enumerate(calls)}
+        self.asked = {n: model.quantities.find_of_motion(call) for n, call in self.calls.items()}
+        for name, asked in self.asked.items():
+            text = text.replace(self.calls[name], f"({name})")
             _check(asked.of, goal.of)
             asked.of.check_rate(model.speed)
-            self.asked[_NUMBER.format(k)] = asked
         self.node: Node = parse(text)
         others = set(_names(self.node)) - set(self.asked)
         if others:
@@ -290,6 +291,11 @@ class _NumberMisses(Misses):
     def count(self) -> int:
         """One."""
         return 1
+
+    def exact(self, motion: Motion) -> float:
+        """The number of a motion, located between its rows."""
+        jets = {n: Jet(np.array(motion.value(c)), _ZERO, _ZERO) for n, c in self.calls.items()}
+        return float(evaluate(self.node, jets, self.angle).v)
 
     def values(self, found: LanePositions) -> tuple[Array, Array]:
         """See :meth:`Misses.values`."""
@@ -312,19 +318,18 @@ class _NumberMisses(Misses):
     def _number(self, asked: AskedOfMotion, found: LanePositions, rows: Any) -> tuple[Array, Array]:
         """A number (D,), whose derivatives (D, P) weigh those of rows."""
         columns = asked.columns(rows, rows.speed)[: 1 + asked.quantity.needs]
-        shape = found.shape
         plain = [found.plain(column) for column in columns]
-        weights: list[AnyArray] = [np.zeros(shape, dtype=part.dtype) for part in plain]
-        lost = [np.full(shape, np.nan)] * (3 - len(plain))
-        located = bool(asked.quantity.sides) and shape[1] > 2
+        weights: list[AnyArray] = [np.zeros(part.shape, dtype=part.dtype) for part in plain]
+        lost = [np.full(found.shape, np.nan)] * (3 - len(plain))
+        located = bool(asked.quantity.sides) and found.shape[1] > 2
         if located:
             step = step_of(self.at, asked.names.inputs[asked.names.lead])
-            sides = asked.quantity.sides
-            numbers, weights[0] = interpolated_extremes(self.at, plain[0], sides, step)
+            given = self.at, plain[0], asked.quantity.sides, step
+            numbers, weights[0] = interpolated_extremes(*given)
         else:
             numbers = asked.evaluate(self.at, *plain, *lost)
         # a design that loses positions has no number to compare
-        numbers[(~found.found.reshape(shape) & self.there).any(axis=1)] = np.nan
+        numbers[(~found.found.reshape(found.shape) & self.there).any(axis=1)] = np.nan
         for k in () if located else np.flatnonzero(np.isfinite(numbers)):
             own = [part[k] for part in (*plain, *lost)]
             slopes = _one_sided_slopes(asked, self.at, *own)

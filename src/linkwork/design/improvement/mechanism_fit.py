@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
+from dataclasses import replace
 
 import numpy as np
 
@@ -22,6 +23,7 @@ __all__ = ["fit_numbers", "misses_before", "path_misses"]
 _STEPS = (60, 200, 200)  # of all lanes, then of the better half
 _BOUND_STEPS = (60,) * 7  # the same; after each the shifts of bounds change
 _POWER_STEPS = 60
+_CORRECTIONS, _CORRECTION_STEPS = 14, 20
 _ALL = 64  # so few lanes all go on, and are left of an interrupted fit
 
 
@@ -60,6 +62,15 @@ def fit_numbers(
         if fit.interrupted:
             break
         check_moved(problem)
+    left = np.arange(len(starts))
+    for _ in range(0 if fit.interrupted else _CORRECTIONS):
+        try:
+            left = problem.correct(fit, left)
+        except KeyboardInterrupt:
+            fit = replace(fit, interrupted=True)
+        if not len(left) or fit.interrupted:
+            break
+        fit = problem.further(fit, left, _CORRECTION_STEPS)
     return problem.result(fit, _ALL if fit.interrupted else None)
 
 

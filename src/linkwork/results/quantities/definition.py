@@ -289,10 +289,12 @@ class MotionQuantity:
 
 def at_extreme(rows: MotionRows, side: float) -> Array:
     """1 in the row with the largest value, for a negative side the smallest; NaN where several
-    positions have it, (R,).
+    positions have it, and if it is infinite, (R,).
     """
     value = side * rows.value
     best = np.fmax.reduce(value)
+    if np.isinf(best):
+        return np.full(len(value), np.nan)
     there = np.flatnonzero(value >= best - EQUAL_ROWS * np.abs(best))
     # neighbouring rows show one extreme, unless the quantity rests there
     runs = np.split(there, np.flatnonzero(np.diff(there) > 1) + 1)

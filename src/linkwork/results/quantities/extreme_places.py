@@ -21,6 +21,7 @@ _SAMPLES = np.linspace(0.0, 1.0, 9)  # of a step between rows
 _POOR = 1e-2  # of the change over a step: cubics that miss so much are no guide
 _FINE = 2.6  # degrees, or parts of the range of which 360 are a turn
 _EIGHTHS = np.arange(1, 8) / 8.0
+_BEYOND = 0.5  # of a step: an extreme of the parabola so near behind the last row may be before it
 
 
 def joined_places(*places: Places) -> Places:
@@ -76,7 +77,13 @@ def _zeros(value: Array, ends: _Ends, slopes: _Ends, smooth: BoolArray) -> Place
     own = (ends[0][row], ends[1][row]), (slopes[0][row], slopes[1][row])
     part = roots_of_cubics(*own, _SAMPLES[falls], _SAMPLES[falls + 1])
     middle = np.flatnonzero(poor)
-    return joined_places((row, part), (middle, np.full(len(middle), 0.5)))
+    corner = np.flatnonzero(poor & (ends[0] > 0.0) & (ends[1] < 0.0))
+    # where the tangents of both ends meet
+    up, down = ends[0][corner], ends[1][corner]
+    meet = (np.diff(value)[corner] - down) / (up - down)
+    return joined_places(
+        (row, part), (middle, np.full(len(middle), 0.5)), (corner, np.clip(meet, 0.0, 1.0))
+    )
 
 
 def roots_of_cubics(ends: _Ends, slopes: _Ends, low: Array, high: Array) -> Array:
@@ -113,7 +120,8 @@ def _next_to_peaks(rows: MotionRows, value: Array) -> Places:
     found = [NOWHERE]
     for k in np.flatnonzero(peaks).tolist():
         found += [(np.full(len(_EIGHTHS), row), _EIGHTHS) for row in (k - 1, k)]
-        found.append(_vertex(rows.input[k - 1 : k + 2], value[k - 1 : k + 2], k))
+        row, part = _vertex(rows.input[k - 1 : k + 2], value[k - 1 : k + 2], k)
+        found.append((row, np.clip(part, 0.0, 1.0)))
     return joined_places(*found, *_next_to_ends(rows, value, best, inner))
 
 
@@ -124,10 +132,12 @@ def _next_to_ends(
     for k in np.flatnonzero(inner & ~(np.roll(inner, 1) & np.roll(inner, -1))).tolist():
         f, u = value[k - 1 : k + 2], rows.input[k - 1 : k + 2]
         row, part = _vertex(u, f, k)
-        beside = inner[k + 1] if row[0] == k else inner[k - 1]
-        concave = 2.0 * f[1] > f[0] + f[2] and 0.0 < part[0] < 1.0
-        if concave and not beside and f.max() + np.ptp(f) >= best:
-            yield row, part
+        behind = row[0] == k
+        beside = inner[k + 1] if behind else inner[k - 1]
+        concave = 2.0 * f[1] > f[0] + f[2] + 16.0 * EPSILON * np.abs(f).max()
+        near = -_BEYOND < part[0] < 1.0 + _BEYOND
+        if concave and near and not beside and f.max() + np.ptp(f) >= best:
+            yield row, np.clip(part, _EIGHTHS[0], _EIGHTHS[-1])
 
 
 def _vertex(u: Array, f: Array, row: int) -> Places:
@@ -137,4 +147,4 @@ def _vertex(u: Array, f: Array, row: int) -> Places:
     below = (at - u[1]) * (u[2] - u[0]) < 0.0
     one: IndexArray = np.array([row - 1 if below else row])
     begin, end = (u[0], u[1]) if below else (u[1], u[2])
-    return one, np.clip(np.array([(at - begin) / (end - begin)]), 0.0, 1.0)
+    return one, np.array([(at - begin) / (end - begin)])

@@ -9,13 +9,16 @@ from typing import Protocol
 import numpy as np
 
 from linkwork.foundation.arrays import Array, BoolArray, IndexArray
+from linkwork.foundation.rounding import EQUAL_ROWS
 from linkwork.results.quantities.asked import AskedOfMotion, Group
 from linkwork.results.quantities.definition import UNKNOWN, MotionRows, Places, Solved
+from linkwork.results.quantities.extreme_places import joined_places
 
 __all__ = ["Between", "LocatedRows", "columns_of", "locate_rows"]
 
-_MOST_PASSES = 16
-_POLE = 1e3  # times the values of the table: there is a pole, not an extreme
+_MOST_PASSES, _SHARP = 16, 40  # the latter for extremes that are no poles so far
+_POLE = 1e3  # times the values of the table: there may be a pole instead of an extreme,
+_GROWS = 0.1  # of the value, where it still changes so much up to the nearest row
 _AT_ROW = 1e-12  # of the input: places so near to a row are that row
 
 
@@ -37,6 +40,10 @@ class Between(Protocol):
     @property
     def switches(self) -> Array:
         """Leading inputs just before and just behind the switches of loads, rising, (K,)."""
+
+    @property
+    def far(self) -> float:
+        """The largest step that shows all extremes of smooth quantities [rad or length]."""
 
     def __call__(self, row: IndexArray, at: Array) -> SolvedTable:
         """Positions at leading inputs (K,) [rad or length] between rows (K,) and the next ones."""
@@ -79,9 +86,13 @@ def locate_rows(
         return LocatedRows(rows=rows, further=further, order=order)
     rows, before, count = replace(rows, joined=between.joined), order, len(order)
     most = _POLE * np.nanmax(np.abs(rows.value), initial=0.0)
-    forced = any(each.word == asked.of.own.name for each in asked.names.further)
-    row, part = _places_of(rows, between.switches) if forced else places(rows, asked.numbers)
-    for k in range(_MOST_PASSES):
+    row, part = _places_within(rows, between.far)
+    if any(each.word == asked.of.own.name for each in asked.names.further):
+        row, part = joined_places((row, part), _places_of(rows, between.switches))
+    sides = asked.quantity.sides
+    for k in range(_SHARP if sides else _MOST_PASSES):
+        if k == _MOST_PASSES and any(_poles(rows, side, most) for side in sides):
+            break
         if k or not len(row):
             row, part = places(rows, asked.numbers)
         step = np.abs(rows.input[row + 1] - rows.input[row])
@@ -102,13 +113,39 @@ def locate_rows(
         order = np.insert(order, behind, count + there)
         before = np.insert(before, behind, before[row[there]])
         further.append(more)
-        if forced and not k:  # a pulse between rows is no pole
-            most = max(most, _POLE * float(np.nanmax(np.abs(own[0]))))
         count += len(at)
-    if asked.quantity.sides and (np.abs(rows.value) > most).any():
-        beyond = np.where(np.abs(rows.value) > most, np.inf * np.sign(rows.value), rows.value)
-        rows = replace(rows, value=beyond)
+    poles = [k for side in sides for k in _poles(rows, side, most)]
+    if poles:
+        value = rows.value.copy()
+        value[poles] *= np.inf
+        rows = replace(rows, value=value)
     return LocatedRows(rows=rows, further=further, order=order)
+
+
+def _places_within(rows: MotionRows, far: float) -> Places:
+    """Where further rows are wanted, so that none is farther from the next one."""
+    assert rows.joined is not None
+    parts = np.where(rows.joined, np.ceil(np.abs(np.diff(rows.input)) / far - EQUAL_ROWS), 1.0)
+    more = np.maximum(parts.astype(np.intp) - 1, 0)
+    row = np.repeat(np.arange(len(more)), more)
+    number = np.arange(len(row)) - np.repeat(np.cumsum(more) - more, more)
+    return row, (number + 1.0) / parts[row]
+
+
+def _poles(rows: MotionRows, side: float, most: float) -> list[int]:
+    """The row of the largest value, for a negative side the smallest, if its size is above ``most``
+    and still grows from row to row: rows next to an extreme are so close that it does not.
+    """
+    k = int(np.nan_to_num(side * rows.value, nan=-np.inf).argmax())
+    size, beside = (
+        abs(float(rows.value[k])),
+        [j for j in (k - 1, k + 1) if 0 <= j < len(rows.value)],
+    )
+    slope = abs(float(rows.first[k])) * np.abs(rows.input[beside] - rows.input[k]).min()
+    grown = (
+        slope if np.isfinite(slope) else np.fmin.reduce(np.abs(rows.value[beside] - rows.value[k]))
+    )
+    return [k] if size > most and not grown <= _GROWS * size else []
 
 
 def _places_of(rows: MotionRows, at: Array) -> Places:
