@@ -37,7 +37,8 @@ __all__ = ["DWELL"]
 _PARTS = 8  # of the distance between rows
 _HALVINGS = 52
 _RIVALS = 8  # ranges that may be the longest
-_RIVAL = 0.1  # of the longest range: so much shorter ones are located, too
+_RIVAL = 0.03  # of the longest range: so much shorter ones are located, too
+_BESIDE = 1e-3  # of its length: a range that begins so near to another is the same one
 _WIDER = 1.03  # bands: what they hold shows extremes that only just leave the band, or do not
 _POOR = 1e-2  # of the band, or of the change over a step: cubics that miss so much are no guide
 _COARSE = 1.0 / 72.0  # of the range of the input
@@ -74,9 +75,11 @@ class _Curve:
     def _flat(self) -> tuple[Array, Array]:
         """Values and derivatives, (D, R) each."""
         count = len(self.rows.input)
-        value, first = (x.reshape(-1, count) for x in (self.rows.value, self.rows.first))
-        if self.rows.joined is not None and not np.isfinite(first).any():
-            first = np.gradient(value, self.rows.input, axis=1)
+        value: Array = self.rows.value.reshape(-1, count)
+        first: Array = self.rows.first.reshape(-1, count)
+        if self.rows.joined is None or np.isfinite(first).any():
+            return value, first
+        first = np.asarray(np.gradient(value, self.rows.input, axis=1))
         return value, first
 
     @cached_property
@@ -87,6 +90,11 @@ class _Curve:
         slopes = (step * x for x in (first[:, :-1], first[:, 1:]))
         begin, end = (np.where(np.isfinite(x), x, ends[1] - ends[0]) for x in slopes)
         return *ends, begin, end
+
+    @cached_property
+    def cycle(self) -> BoolArray:
+        """Which motions return after one turn, (D,)."""
+        return np.broadcast_to(self.rows.cycle, self.rows.value.shape[:-1]).reshape(-1)
 
     @cached_property
     def steps(self) -> int:
@@ -129,60 +137,73 @@ class _Curve:
     def _weighted(self, place: Array, weights: Callable[[Array], _Weights]) -> Array:
         piece, s, _ = self.piece(place)
         (p, q), (r, t) = weights(s)
-        a, b, c, d = (x[np.arange(len(x)), piece] for x in self._cubics)
+        own = np.arange(len(piece)).reshape(-1, *[1] * (piece.ndim - 1))
+        a, b, c, d = (x[own, piece] for x in self._cubics)
         found: Array = p * a + q * b + r * c + t * d
         return found
 
     def value(self, place: Array) -> Array:
-        """The quantity at a place, (D,)."""
+        """The quantity at places, (D, …)."""
         return self._weighted(place, cubic_weights)
 
     def slope(self, place: Array) -> Array:
         """Its derivative by the input, (D,)."""
-        return self._weighted(place, cubic_weight_slopes) / self._step(place)
-
-    def _step(self, place: Array) -> Array:
-        found: Array = np.diff(self.rows.input)[self.piece(place)[0]]
-        return found
+        found: Array = self._weighted(place, cubic_weight_slopes)
+        return found / np.diff(self.rows.input)[self.piece(place)[0]]
 
     def input(self, place: Array) -> Array:
         """The input at a place; after a turn it goes on, (D,)."""
         piece, s, turns = self.piece(place)
         u = self.rows.input
-        found: Array = u[piece] + s * (u[piece + 1] - u[piece]) + turns * self.rows.turn
+        found: Array = u[piece] + s * (u[piece + 1] - u[piece]) + turns * (u[-1] - u[0])
         return found
 
-    def crossing(self, number: IndexArray, level: Array, way: Array) -> Array:
+    def place(self, at: Array) -> Array:
+        """The place of an input, (D,)."""
+        u = self.rows.input
+        turns = np.maximum(np.ceil((at - u[0]) / (u[-1] - u[0])) - 1.0, 0.0)
+        at = at - turns * (u[-1] - u[0])
+        row = np.clip(u.searchsorted(at) - 1, 0, self.steps - 1)
+        found: Array = row + (at - u[row]) / (u[row + 1] - u[row]) + turns * self.steps
+        return _PARTS * found
+
+    def crossing(self, number: Array, level: Array, way: Array) -> Array:
         """Where the quantity passes a level upwards, or with way -1 downwards."""
         return _halved(number, lambda place: way * (self.value(place) - level) < 0.0)
 
-    def extreme(self, number: IndexArray, side: float, inner: BoolArray) -> Array:
+    def extreme(self, number: Array, side: float, inner: BoolArray) -> Array:
         """The extreme next to the largest eighth, or it itself at an end of the range."""
         rises = side * self.slope(number) > 0.0
-        near = np.where(rises, number, np.maximum(number - 1, 0))
+        near = np.where(rises, number, np.maximum(number - 1.0, 0.0))
         found = _halved(near, lambda place: side * self.slope(place) > 0.0)
         return np.where(inner, found, number)
 
     def slid(
-        self, ends: tuple[IndexArray, IndexArray], band: float, way: Array, limits: Array
+        self,
+        eighths: tuple[Array, Array],
+        band: float,
+        way: Array,
+        limits: tuple[Array, Array],
     ) -> tuple[Array, Array]:
         """Begin and end of ranges that rise, or with way -1 fall, by the band from the one to the
         other, about eighths, where they are longest and no extreme between leaves them.
         """
-        (begin, last), most = ends, _PARTS * self.steps * (2 if self.rows.turn else 1)
-        low, high = begin - 1.0, begin + 1.0
-        end = near = np.asarray(last, dtype=float)
+        last, u = self.input(eighths[1]), self.rows.input
+        most = u[-1] + np.where(self.cycle, u[-1] - u[0], 0.0)
+        low, high = (self.input(eighths[0] + side) for side in (-1.0, 1.0))
+        near, end = 2.0 * (high - low) + abs(self.input(eighths[1] - 1.0) - last), last
         for _ in range(_HALVINGS):
             middle = 0.5 * (low + high)
-            level = way * self.value(middle)
-            for _ in range(2):  # Newton's steps: the end changes by half of its last change
-                ahead = (level + band - way * self.value(end)) / (way * self.slope(end))
-                ahead = np.nan_to_num(_PARTS * ahead / self._step(end))
-                end = np.clip(end + ahead, near - 1.0, np.minimum(near + 1.0, most))
-            flatter = way * self.slope(middle) > way * self.slope(end)
-            right = (level + band < limits[1]) | ((level <= limits[0]) & flatter)
+            place = self.place(middle)
+            level = way * self.value(place)
+            # a Newton step: the end changes by half of its last change
+            there = self.place(end)
+            ahead = (level + band - way * self.value(there)) / (way * self.slope(there))
+            end = np.clip(end + np.nan_to_num(ahead), last - near, np.minimum(last + near, most))
+            flatter = way * self.slope(place) > way * self.slope(self.place(end))
+            right = (level + band < limits[1]) | ((level <= limits[0]) & flatter & (end < most))
             low, high = np.where(right, middle, low), np.where(right, high, middle)
-        return high, end
+        return self.place(high), self.place(end)
 
     def weights(self, place: Array, factor: float) -> tuple[Array, Array]:
         """A factor times the derivatives of the only motion's value by its rows, (R,) each."""
@@ -200,9 +221,9 @@ class _Curve:
         return value, first
 
 
-def _halved(number: Array | IndexArray, before: Callable[[Array], BoolArray]) -> Array:
+def _halved(low: Array, before: Callable[[Array], BoolArray]) -> Array:
     """Where something that holds from a place on ends within an eighth."""
-    low, high = number + 0.0, number + 1.0
+    high: Array = low + 1.0
     for _ in range(_HALVINGS):
         middle = 0.5 * (low + high)
         ahead = before(middle)
@@ -315,16 +336,14 @@ def _rivals(curve: _Curve, band: float, shorter: float) -> Iterator[tuple[_End, 
 
     ``shorter``: up to which part of the longest range they may seem to be shorter.
     """
-    up = curve.rows
     u, f = curve.eighths
-    cycle = np.broadcast_to(up.cycle, up.value.shape[:-1]).reshape(-1)
-    once = len(u)
+    cycle, once = curve.cycle, len(u)
     if cycle.any():
         # a dwell may go on across the end of the turn
-        u = np.concatenate([u, u[1:] + up.turn])
+        u = np.concatenate([u, u[1:] + u[-1] - u[0]])
         again = np.where(cycle[:, None], f[:, 1:], np.nan)
         f = np.concatenate([f, again], axis=1)
-    count, width = _counts(u, f, band, once)
+    count, width = _counts(curve, u, f, band)
     # places of the second turn only serve ranges that begin in the first
     width[:, once:] = -1.0
     width[cycle, 0] = -1.0  # the same place as a turn later, where what is before it is known
@@ -338,7 +357,8 @@ def _rivals(curve: _Curve, band: float, shorter: float) -> Iterator[tuple[_End, 
     least = most - np.maximum(shorter * most, 2.0 * np.diff(u).max())
     for _ in range(_RIVALS):
         yield _ends_from(curve, band, f, best, count[every, best])
-        width[every, best] = -1.0
+        near = _BESIDE * width[every, best]
+        width[abs(u - u[best][:, None]) <= near[:, None]] = -1.0
         best = width.argmax(axis=1)
         rival = width[every, best] >= np.maximum(least, 0.0)
         if not rival.any():
@@ -346,9 +366,9 @@ def _rivals(curve: _Curve, band: float, shorter: float) -> Iterator[tuple[_End, 
         best = np.where(rival, best, first)
 
 
-def _counts(u: Array, f: Array, band: float, most: int) -> tuple[IndexArray, Array]:
+def _counts(curve: _Curve, u: Array, f: Array, band: float) -> tuple[IndexArray, Array]:
     """How many values from each one on stay within a band, and over which range of the input the
-    line through them does, (D, F): by doubling, then by halving.
+    cubics do, (D, F): by doubling, then by halving.
     """
     highs, lows = [f], [f]
     while 2 ** len(highs) <= f.shape[1]:
@@ -367,13 +387,15 @@ def _counts(u: Array, f: Array, band: float, most: int) -> tuple[IndexArray, Arr
         longer = inside & (more_high - more_low <= band)
         count = np.where(longer, count + 2**k, count)
         high, low = np.where(longer, more_high, high), np.where(longer, more_low, low)
-    count = np.minimum(count, most)
+    count = np.minimum(count, len(curve.eighths[0]))
     last = here + count - 1
     beside = np.minimum(last + 1, f.shape[1] - 1)
     at, there = (np.take_along_axis(f, k, axis=1) for k in (last, beside))
     with np.errstate(all="ignore"):
-        part = (np.where(there > at, low + band, high - band) - at) / (there - at)
-    on = np.where(count < most, np.clip(np.nan_to_num(part, posinf=0.0, neginf=0.0), 0.0, 1.0), 0.0)
+        level = np.where(there > at, low + band, high - band)
+        on = np.clip((level - at) / (there - at), 0.0, 1.0)
+        on = on + (level - curve.value(last + on)) / (there - at)
+    on = np.where(np.isfinite(on) & (count < curve.eighths[1].shape[1]), np.clip(on, 0.0, 1.0), 0.0)
     return count, np.where(np.isnan(f), -1.0, u[last] - u + on * (u[beside] - u[last]))
 
 
@@ -412,7 +434,9 @@ def _ends_from(
             np.where(rises, low + band, high - band), np.fmin(here, there), np.fmax(here, there)
         )
         # from the smaller number on the values are still, or not yet, within the band
-        at = curve.crossing(np.minimum(last_within, beside), level, np.where(rises, way, -way))
+        at = curve.crossing(
+            np.minimum(last_within, beside).astype(float), level, np.where(rises, way, -way)
+        )
         moves: BoolArray = known & np.isfinite(there) & (here != there) & (level != there)
         # a neighbour just at the level, or none at all, is the end itself
         touches = known & (level == there) & (here != there)
@@ -427,7 +451,7 @@ def _ends_from(
     slides = (outward[0] != outward[1]) & np.all([x.moves | x.touches for x in found], axis=0)
     if not slides.any():
         return found[0], found[1]
-    slid = _slid(curve, band, (start, last), outward[1], inner)
+    slid = _slid(curve, band, (start.astype(float), last.astype(float)), outward[1], inner)
     return slid[0].or_else(slides, found[0]), slid[1].or_else(slides, found[1])
 
 
@@ -446,7 +470,7 @@ def _inner(
     # a quantity that rests has its extreme everywhere
     rests = np.fmax.reduce(np.where(inside, abs(f[:, 1:-1] - f[rows, number, None]), 0.0), axis=1)
     moves = found & (rests > EQUAL_ROWS * np.abs(f[rows, number]))
-    place = curve.extreme(number, side, moves)
+    place = curve.extreme(number.astype(float), side, moves)
     value = np.where(moves, curve.value(place), f[rows, number])
     return place, np.where(found, value, -side * np.inf)
 
@@ -454,7 +478,7 @@ def _inner(
 def _slid(
     curve: _Curve,
     band: float,
-    eighths: tuple[IndexArray, IndexArray],
+    eighths: tuple[Array, Array],
     way: Array,
     inner: dict[float, tuple[Array, Array]],
 ) -> tuple[_End, _End]:
@@ -467,11 +491,14 @@ def _slid(
     # an extreme between begin and end may hold both, else they hold each other
     held = [abs(level - limits[0]) <= near, abs(level + band - limits[1]) <= near]
     places = [np.where(rises, bottom, top), np.where(rises, top, bottom)]
-    ends = begin, end
-    moves = np.ones(len(level), dtype=bool)
-    return tuple(  # type: ignore[return-value]  # a pair
-        _End(at=x, extreme=np.select(held, places, begin), moves=moves, touches=~moves)
-        for x in ends
+    last = _PARTS * curve.steps * np.where(curve.cycle, 2.0, 1.0)
+    # the table ends there
+    free = begin > _BESIDE, end < last - _BESIDE
+    held, places = [*held, ~free[1]], [*places, end]
+    extreme = np.select(held, places, begin)
+    return (
+        _End(at=begin, extreme=extreme, moves=free[0], touches=np.zeros_like(rises)),
+        _End(at=end, extreme=extreme, moves=free[1], touches=np.zeros_like(rises)),
     )
 
 
