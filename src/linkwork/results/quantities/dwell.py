@@ -393,7 +393,7 @@ def _counts(curve: _Curve, u: Array, f: Array, band: float) -> tuple[IndexArray,
     at, there = (np.take_along_axis(f, k, axis=1) for k in (last, beside))
     with np.errstate(all="ignore"):
         level = np.where(there > at, low + band, high - band)
-        on = np.clip((level - at) / (there - at), 0.0, 1.0)
+        on = np.clip(np.nan_to_num((level - at) / (there - at)), 0.0, 1.0)
         on = on + (level - curve.value(last + on)) / (there - at)
     on = np.where(np.isfinite(on) & (count < curve.eighths[1].shape[1]), np.clip(on, 0.0, 1.0), 0.0)
     return count, np.where(np.isnan(f), -1.0, u[last] - u + on * (u[beside] - u[last]))
