@@ -315,5 +315,7 @@ def test_a_plain_zero_or_one_leaves_a_taped_number_as_it_is() -> None:
 
 def test_numbers_of_every_mechanism_of_the_library_are_chosen() -> None:
     """A follower with two points on its line chooses a direction while its numbers are taped."""
-    counts = {name: len(chosen_numbers(read_example(name).model, None)[0]) for name in lw.examples()}
+    counts = {
+        name: len(chosen_numbers(read_example(name).model, None)[0]) for name in lw.examples()
+    }
     assert counts["cam-roller-follower"] == 5

@@ -36,6 +36,7 @@ __all__ = ["DWELL"]
 
 _PARTS = 8  # of the distance between rows
 _HALVINGS = 52
+_NEWTONS = 3
 _RIVALS = 8  # ranges that may be the longest
 _RIVAL = 0.03  # of the longest range: so much shorter ones are located, too
 _BESIDE = 1e-3  # of its length: a range that begins so near to another is the same one
@@ -192,18 +193,26 @@ class _Curve:
         most = u[-1] + np.where(self.cycle, u[-1] - u[0], 0.0)
         low, high = (self.input(eighths[0] + side) for side in (-1.0, 1.0))
         near, end = 2.0 * (high - low) + abs(self.input(eighths[1] - 1.0) - last), last
+        top = way * self.value(self.place(most))
         for _ in range(_HALVINGS):
             middle = 0.5 * (low + high)
             place = self.place(middle)
             level = way * self.value(place)
-            # a Newton step: the end changes by half of its last change
-            there = self.place(end)
-            ahead = (level + band - way * self.value(there)) / (way * self.slope(there))
-            end = np.clip(end + np.nan_to_num(ahead), last - near, np.minimum(last + near, most))
+            for _ in range(_NEWTONS):  # from the last end: it changes half as much every time
+                there = self.place(end)
+                ahead = (level + band - way * self.value(there)) / (way * self.slope(there))
+                end = np.clip(
+                    end + np.nan_to_num(ahead), last - near, np.minimum(last + near, most)
+                )
             flatter = way * self.slope(place) > way * self.slope(self.place(end))
-            right = (level + band < limits[1]) | ((level <= limits[0]) & flatter & (end < most))
+            right = (level + band < limits[1]) | (
+                (level <= limits[0]) & flatter & (level + band < top)
+            )
             low, high = np.where(right, middle, low), np.where(right, high, middle)
-        return self.place(high), self.place(end)
+        found = self.place(high)
+        # at the end of the table Newton's steps may stay before it
+        closed = (end > last - near) & (way * self.value(found) + band >= top - EQUAL_ROWS * band)
+        return found, self.place(np.where(closed & (most <= last + near), most, end))
 
     def weights(self, place: Array, factor: float) -> tuple[Array, Array]:
         """A factor times the derivatives of the only motion's value by its rows, (R,) each."""
