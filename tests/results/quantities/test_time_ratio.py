@@ -52,17 +52,17 @@ def test_of_what_does_not_change_there_is_none() -> None:
 @pytest.mark.parametrize("start", [0.0, 7.5])
 def test_rests_are_part_of_no_stroke(law: str, start: float) -> None:
     """A rise over 20 deg and a return over 30 deg, whatever rests between them."""
-    segments = [
+    segments = (
         lw.Segment(law=law, over=20, lift=10),
         lw.Segment(law="dwell", over=60),
         lw.Segment(law=law, over=30, lift=-10),
         lw.Segment(law="dwell", over=250),
-    ]
+    )
     cam = lw.linkage(
         points={"O": (0, 0), "S": (0, -50), "T": (0, 100), "P": (0, 40)},
         links={"ground": ["O", "S", "T"], "disc": ["O"], "f": ["P"]},
         sliders=[
-            lw.Slider(name="s", link="f", points=["P"], angle=90, on="ground", line=["S", "T"])
+            lw.Slider(name="s", link="f", points=("P",), angle=90, on="ground", line=("S", "T"))
         ],
         cams=[
             lw.Cam(
