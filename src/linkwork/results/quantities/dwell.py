@@ -12,31 +12,24 @@ may be the longest, until these stay where they are.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from dataclasses import dataclass
-from functools import cached_property
-from typing import Any
 
 import numpy as np
 
 from linkwork.foundation.arrays import Array, BoolArray, IndexArray
 from linkwork.foundation.rounding import EPSILON, EQUAL_ROWS
+from linkwork.results.quantities.cubic_curve import PARTS, CubicCurve
 from linkwork.results.quantities.definition import (
     MotionQuantity,
     MotionRows,
     Places,
     RowSlopes,
-    cubic,
-    cubic_weight_slopes,
-    cubic_weights,
 )
 from linkwork.results.quantities.extreme_places import NOWHERE, joined_places
 
 __all__ = ["DWELL"]
 
-_PARTS = 8  # of the distance between rows
-_HALVINGS = 52
-_NEWTONS = 3
 _RIVALS = 8  # ranges that may be the longest
 _RIVAL = 0.03  # of the longest range: so much shorter ones are located, too
 _BESIDE = 1e-3  # of its length: a range that begins so near to another is the same one
@@ -44,8 +37,6 @@ _WIDER = 1.03  # bands: what they hold shows extremes that only just leave the b
 _POOR = 1e-2  # of the band, or of the change over a step: cubics that miss so much are no guide
 _COARSE = 1.0 / 72.0  # of the range of the input
 _MOST_PARTS = 32  # of a step of which the cubic is no guide
-
-_Weights = tuple[tuple[Any, Any], tuple[Any, Any]]
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -66,180 +57,6 @@ class _End:
         return _End(**{k: np.where(holds, own, vars(other)[k]) for k, own in vars(self).items()})
 
 
-@dataclass(frozen=True, eq=False)
-class _Curve:
-    """The cubics of D motions with R rows of increasing input."""
-
-    rows: MotionRows
-
-    @cached_property
-    def _flat(self) -> tuple[Array, Array]:
-        """Values and derivatives, (D, R) each."""
-        count = len(self.rows.input)
-        value: Array = self.rows.value.reshape(-1, count)
-        first: Array = self.rows.first.reshape(-1, count)
-        if self.rows.joined is None or np.isfinite(first).any():
-            return value, first
-        first = np.asarray(np.gradient(value, self.rows.input, axis=1))
-        return value, first
-
-    @cached_property
-    def _cubics(self) -> tuple[Array, Array, Array, Array]:
-        """Values and slopes at both ends of every step, (D, R - 1) each."""
-        (value, first), step = self._flat, np.diff(self.rows.input)
-        ends = value[:, :-1], value[:, 1:]
-        slopes = (step * x for x in (first[:, :-1], first[:, 1:]))
-        begin, end = (np.where(np.isfinite(x), x, ends[1] - ends[0]) for x in slopes)
-        return *ends, begin, end
-
-    @cached_property
-    def cycle(self) -> BoolArray:
-        """Which motions return after one turn, (D,)."""
-        return np.broadcast_to(self.rows.cycle, self.rows.value.shape[:-1]).reshape(-1)
-
-    @cached_property
-    def steps(self) -> int:
-        """R - 1."""
-        return len(self.rows.input) - 1
-
-    @cached_property
-    def eighths(self) -> tuple[Array, Array]:
-        """Inputs (F,) and values (D, F) at parts of the distances between rows."""
-        s, (value, _) = np.arange(_PARTS) / _PARTS, self._flat
-        a, b, c, d = (x[..., None] for x in self._cubics)
-        inner = cubic(s, (a, b), (c, d))
-        inner[..., 0] = value[:, :-1]
-        step = np.diff(self.rows.input)
-        places = (self.rows.input[:-1, None] + s * step[:, None]).reshape(-1)
-        fine = inner.reshape(len(value), -1)
-        u = np.append(places, self.rows.input[-1])
-        return u, np.concatenate([fine, value[:, -1:]], axis=1)
-
-    @property
-    def missed(self) -> Array:
-        """What the cubics of the only motion may miss, by the second derivatives, (R - 1,)."""
-        (a, b, c, d), first = (x[0] for x in self._cubics), self._flat[1][0]
-        second, step = self.rows.second, np.diff(self.rows.input)
-        if not np.isfinite(second).any():
-            second = np.gradient(first, self.rows.input)
-        bends = 6.0 * (b - a) - 4.0 * c - 2.0 * d, 6.0 * (a - b) + 2.0 * c + 4.0 * d
-        ends = second[:-1], second[1:]
-        miss = sum(abs(step**2 * x - bend) for x, bend in zip(ends, bends, strict=True)) / 16.0
-        found: Array = np.where(np.isfinite(miss), miss, abs(b - a) / 4.0)
-        return found
-
-    def piece(self, place: Array) -> tuple[IndexArray, Array, Array]:
-        """The step between rows in which a place lies, the part of it, and the turns before."""
-        turns = np.maximum(np.ceil(place / (_PARTS * self.steps)) - 1.0, 0.0)
-        part = place / _PARTS - turns * self.steps
-        piece = np.minimum(part.astype(np.intp), self.steps - 1)
-        return piece, part - piece, turns
-
-    def _weighted(self, place: Array, weights: Callable[[Array], _Weights]) -> Array:
-        piece, s, _ = self.piece(place)
-        (p, q), (r, t) = weights(s)
-        own = np.arange(len(piece)).reshape(-1, *[1] * (piece.ndim - 1))
-        a, b, c, d = (x[own, piece] for x in self._cubics)
-        found: Array = p * a + q * b + r * c + t * d
-        return found
-
-    def value(self, place: Array) -> Array:
-        """The quantity at places, (D, …)."""
-        return self._weighted(place, cubic_weights)
-
-    def slope(self, place: Array) -> Array:
-        """Its derivative by the input, (D,)."""
-        found: Array = self._weighted(place, cubic_weight_slopes)
-        return found / np.diff(self.rows.input)[self.piece(place)[0]]
-
-    def input(self, place: Array) -> Array:
-        """The input at a place; after a turn it goes on, (D,)."""
-        piece, s, turns = self.piece(place)
-        u = self.rows.input
-        found: Array = u[piece] + s * (u[piece + 1] - u[piece]) + turns * (u[-1] - u[0])
-        return found
-
-    def place(self, at: Array) -> Array:
-        """The place of an input, (D,)."""
-        u = self.rows.input
-        turns = np.maximum(np.ceil((at - u[0]) / (u[-1] - u[0])) - 1.0, 0.0)
-        at = at - turns * (u[-1] - u[0])
-        row = np.clip(u.searchsorted(at) - 1, 0, self.steps - 1)
-        found: Array = row + (at - u[row]) / (u[row + 1] - u[row]) + turns * self.steps
-        return _PARTS * found
-
-    def crossing(self, number: Array, level: Array, way: Array) -> Array:
-        """Where the quantity passes a level upwards, or with way -1 downwards."""
-        return _halved(number, lambda place: way * (self.value(place) - level) < 0.0)
-
-    def extreme(self, number: Array, side: float, inner: BoolArray) -> Array:
-        """The extreme next to the largest eighth, or it itself at an end of the range."""
-        rises = side * self.slope(number) > 0.0
-        near = np.where(rises, number, np.maximum(number - 1.0, 0.0))
-        found = _halved(near, lambda place: side * self.slope(place) > 0.0)
-        return np.where(inner, found, number)
-
-    def slid(
-        self,
-        eighths: tuple[Array, Array],
-        band: float,
-        way: Array,
-        limits: tuple[Array, Array],
-    ) -> tuple[Array, Array]:
-        """Begin and end of ranges that rise, or with way -1 fall, by the band from the one to the
-        other, about eighths, where they are longest and no extreme between leaves them.
-        """
-        last, u = self.input(eighths[1]), self.rows.input
-        most = u[-1] + np.where(self.cycle, u[-1] - u[0], 0.0)
-        low, high = (self.input(eighths[0] + side) for side in (-1.0, 1.0))
-        near, end = 2.0 * (high - low) + abs(self.input(eighths[1] - 1.0) - last), last
-        top = way * self.value(self.place(most))
-        for _ in range(_HALVINGS):
-            middle = 0.5 * (low + high)
-            place = self.place(middle)
-            level = way * self.value(place)
-            for _ in range(_NEWTONS):  # from the last end: it changes half as much every time
-                there = self.place(end)
-                ahead = (level + band - way * self.value(there)) / (way * self.slope(there))
-                end = np.clip(
-                    end + np.nan_to_num(ahead), last - near, np.minimum(last + near, most)
-                )
-            flatter = way * self.slope(place) > way * self.slope(self.place(end))
-            right = (level + band < limits[1]) | (
-                (level <= limits[0]) & flatter & (level + band < top)
-            )
-            low, high = np.where(right, middle, low), np.where(right, high, middle)
-        found = self.place(high)
-        # at the end of the table Newton's steps may stay before it
-        closed = (end > last - near) & (way * self.value(found) + band >= top - EQUAL_ROWS * band)
-        return found, self.place(np.where(closed & (most <= last + near), most, end))
-
-    def weights(self, place: Array, factor: float) -> tuple[Array, Array]:
-        """A factor times the derivatives of the only motion's value by its rows, (R,) each."""
-        value, first = np.zeros((2, self.steps + 1))
-        pieces, parts, _ = self.piece(place)
-        row, s = int(pieces[0]), float(parts[0])
-        step = self.rows.input[row + 1] - self.rows.input[row]
-        for k, end, slope in zip((row, row + 1), *cubic_weights(s), strict=True):
-            value[k] += factor * end
-            if np.isfinite(self.rows.first[k]):
-                first[k] += factor * slope * step
-            else:  # the chord takes the place of a slope that does not exist
-                value[row + 1] += factor * slope
-                value[row] -= factor * slope
-        return value, first
-
-
-def _halved(low: Array, before: Callable[[Array], BoolArray]) -> Array:
-    """Where something that holds from a place on ends within an eighth."""
-    high: Array = low + 1.0
-    for _ in range(_HALVINGS):
-        middle = 0.5 * (low + high)
-        ahead = before(middle)
-        low, high = np.where(ahead, middle, low), np.where(ahead, high, middle)
-    return high
-
-
 def _longest(rows: MotionRows, numbers: tuple[float, ...]) -> Array:
     """How long it is, in the unit of the input in files."""
     begin, end = _range(rows, numbers[0])
@@ -258,7 +75,7 @@ def _range(rows: MotionRows, band: float) -> tuple[Array, Array]:
     up = rows.ascending()
     if up is None or len(up.input) < 2:
         return np.full(shape, np.nan), np.full(shape, np.nan)
-    curve = _Curve(up)
+    curve = CubicCurve(up)
     begin, end = (curve.input(each.at) for each in _ends(curve, band))
     full = end - begin >= up.input[-1] - up.input[0]
     begin, end = np.where(full, up.input[0], begin), np.where(full, up.input[-1], end)
@@ -286,7 +103,7 @@ def _range_slopes(rows: MotionRows, band: float, factors: tuple[float, float]) -
     value, first = np.zeros((2, count))
     if end - begin >= up.input[-1] - up.input[0]:
         return RowSlopes(value=value)
-    curve = _Curve(up)
+    curve = CubicCurve(up)
     for own, factor in zip(_ends(curve, band), factors, strict=True):
         if not (own.moves[0] or own.touches[0]) or factor == 0.0:
             continue  # the table ends there
@@ -309,14 +126,14 @@ def _places(rows: MotionRows, numbers: tuple[float, ...]) -> Places:
     if up is None or up.joined is None or not np.isfinite(up.value).any():
         return NOWHERE
     with np.errstate(all="ignore"):
-        row, part = _wanted(_Curve(up), up.joined, band)
+        row, part = _wanted(CubicCurve(up), up.joined, band)
     there = up.joined[row]
     row, part = row[there], part[there]
     steps = len(up.input) - 1
     return (row, part) if up.input[0] == rows.input[0] else (steps - 1 - row, 1.0 - part)
 
 
-def _wanted(curve: _Curve, joined: BoolArray, band: float) -> Places:
+def _wanted(curve: CubicCurve, joined: BoolArray, band: float) -> Places:
     step, missed = np.diff(curve.rows.input), curve.missed
     span, f = np.ptp(curve.rows.input), curve.eighths[1][0]
     rounding = 64.0 * EPSILON * np.nanmax(np.abs(f))
@@ -330,7 +147,7 @@ def _wanted(curve: _Curve, joined: BoolArray, band: float) -> Places:
         if ends:
             places = np.concatenate([x for end in ends for x in (end.at, end.extreme)])
             found = curve.piece(places)[:2]
-        change = np.ptp(np.append(f[:-1].reshape(-1, _PARTS), f[_PARTS::_PARTS, None], 1), axis=1)
+        change = np.ptp(np.append(f[:-1].reshape(-1, PARTS), f[PARTS::PARTS, None], 1), axis=1)
         poor[found[0]] = (missed > _POOR * change + rounding)[found[0]]
         allowed[:] = rounding
     more = np.clip(2.0 * (missed / allowed) ** 0.25, np.ceil(step / (_COARSE * span)), _MOST_PARTS)
@@ -340,7 +157,7 @@ def _wanted(curve: _Curve, joined: BoolArray, band: float) -> Places:
     return joined_places(found, (split, (np.arange(len(split)) - first + 1) / parts[split]))
 
 
-def _rivals(curve: _Curve, band: float, shorter: float) -> Iterator[tuple[_End, _End]]:
+def _rivals(curve: CubicCurve, band: float, shorter: float) -> Iterator[tuple[_End, _End]]:
     """The ends of ranges that may be the longest, those of the longest by eighths first.
 
     ``shorter``: up to which part of the longest range they may seem to be shorter.
@@ -375,7 +192,7 @@ def _rivals(curve: _Curve, band: float, shorter: float) -> Iterator[tuple[_End, 
         best = np.where(rival, best, first)
 
 
-def _counts(curve: _Curve, u: Array, f: Array, band: float) -> tuple[IndexArray, Array]:
+def _counts(curve: CubicCurve, u: Array, f: Array, band: float) -> tuple[IndexArray, Array]:
     """How many values from each one on stay within a band, and over which range of the input the
     cubics do, (D, F): by doubling, then by halving.
     """
@@ -408,7 +225,7 @@ def _counts(curve: _Curve, u: Array, f: Array, band: float) -> tuple[IndexArray,
     return count, np.where(np.isnan(f), -1.0, u[last] - u + on * (u[beside] - u[last]))
 
 
-def _ends(curve: _Curve, band: float) -> tuple[_End, _End]:
+def _ends(curve: CubicCurve, band: float) -> tuple[_End, _End]:
     """Where the longest range begins and ends."""
     pairs = _rivals(curve, band, 0.0)
     begin, end = next(pairs)
@@ -421,7 +238,7 @@ def _ends(curve: _Curve, band: float) -> tuple[_End, _End]:
 
 
 def _ends_from(
-    curve: _Curve, band: float, f: Array, start: IndexArray, count: IndexArray
+    curve: CubicCurve, band: float, f: Array, start: IndexArray, count: IndexArray
 ) -> tuple[_End, _End]:
     """Where a range about so many eighths begins and ends: where the quantity leaves the band."""
     rows, last = np.arange(len(f)), start + count - 1
@@ -465,7 +282,7 @@ def _ends_from(
 
 
 def _inner(
-    curve: _Curve, f: Array, side: float, start: IndexArray, last: IndexArray
+    curve: CubicCurve, f: Array, side: float, start: IndexArray, last: IndexArray
 ) -> tuple[Array, Array]:
     """The largest extreme, or with side -1 the smallest, between begin and end, and its value."""
     numbers, rows = np.arange(1, f.shape[1] - 1), np.arange(len(f))
@@ -485,7 +302,7 @@ def _inner(
 
 
 def _slid(
-    curve: _Curve,
+    curve: CubicCurve,
     band: float,
     eighths: tuple[Array, Array],
     way: Array,
@@ -500,7 +317,7 @@ def _slid(
     # an extreme between begin and end may hold both, else they hold each other
     held = [abs(level - limits[0]) <= near, abs(level + band - limits[1]) <= near]
     places = [np.where(rises, bottom, top), np.where(rises, top, bottom)]
-    last = _PARTS * curve.steps * np.where(curve.cycle, 2.0, 1.0)
+    last = PARTS * curve.steps * np.where(curve.cycle, 2.0, 1.0)
     # the table ends there
     free = begin > _BESIDE, end < last - _BESIDE
     held, places = [*held, ~free[1]], [*places, end]
