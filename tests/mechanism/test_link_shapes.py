@@ -57,3 +57,39 @@ def test_designs_follow_the_side_across_an_angle(name: str, varied: str) -> None
         own = others.written(x[k : k + 1])
         for node, (values, _) in written.known.items():
             assert values[k] == pytest.approx(own.known[node][0][0], rel=1e-12, abs=1e-12)
+
+
+@pytest.mark.parametrize("off", [7.5e-8, 1e-8, 1e-12])
+def test_dimensions_that_contradict_each_other_move_no_other_point(off: float) -> None:
+    """E is on the line O A and seen from A beside it; F has a flat triangle of its own."""
+    given = [Distance("O", "A", 2.0)]
+    vertices = [
+        VertexAngle("O", "A", "E", math.radians(off)),
+        VertexAngle("E", "O", "A", math.pi),
+        VertexAngle("A", "O", "F", math.radians(4.4e-8)),
+        VertexAngle("F", "A", "O", math.radians(179.99999988)),
+    ]
+    sketch = {"O": 0j, "A": 2 + 0j, "E": -0.5 + 0j, "F": 3.1579 + 0j}
+    with pytest.raises(ShapeError, match=r"has an angle of \S+° at A, not \S+°: \S+ rad apart"):
+        place(("O", "A", "E", "F"), sketch, given, vertices)
+
+
+@pytest.mark.parametrize("order", [1, -1])
+@pytest.mark.parametrize(("off", "fits"), [(0.0, True), (3e-10, False), (-1e-12, False)])
+def test_a_redundant_dimension_agrees_to_rounding(off: float, fits: bool, order: int) -> None:
+    sides = [Distance("O", "A", 3.0), Distance("A", "P", 4.0), Distance("O", "P", 5.0)][::order]
+    sketch = {"O": 0j, "A": 3 + 0j, "P": 3 + 4j}
+    angles = [VertexAngle("A", "O", "P", math.atan2(4.0, 3.0) + off)]
+    if fits:
+        shape = place(("O", "A", "P"), sketch, sides, angles)
+        assert shape.local["P"] == pytest.approx(3 + 4j, rel=1e-15)
+        return
+    message = r"has 3 dimensions, 4 are given and disagree: .*: \S+ (rad|of it) apart"
+    with pytest.raises(ShapeError, match=message):
+        place(("O", "A", "P"), sketch, sides, angles)
+
+
+def test_sides_that_do_not_reach_each_other_are_refused() -> None:
+    sides = [Distance("O", "A", 1.0), Distance("A", "P", 1.0), Distance("O", "P", 2.0 + 1e-10)]
+    with pytest.raises(ShapeError, match="no link has these dimensions"):
+        place(("O", "A", "P"), {"O": 0j, "A": 1 + 0j, "P": 2 + 0.1j}, sides, [])

@@ -10,9 +10,10 @@ from linkwork.foundation.elementwise import cis, degrees, detached, is_steady, p
 from linkwork.foundation.lanes import Rest
 from linkwork.foundation.precise import Precise, sin_cos
 
-__all__ = ["AGREE", "Distance", "Given", "ShapeError", "VertexAngle"]
+__all__ = ["AGREE", "Distance", "Given", "ShapeError", "VertexAngle", "compared", "fits"]
 
-AGREE = 1e-9  # relative, or [rad]: disagreement of redundant dimensions
+AGREE = 1e-9  # relative, or [rad]: nearer to its dimensions a shape may be placed by them
+_ROUNDED = 1e-13  # the same of numbers without their rests
 
 
 class ShapeError(Exception):
@@ -163,3 +164,21 @@ class VertexAngle:
 
 
 Given = Distance | VertexAngle
+
+
+def fits(row: Given, z: Mapping[str, Precise], tolerance: float) -> bool:
+    """Whether placed points have a dimension, in numbers as exact as they are."""
+    rounded = {p: place.high for p, place in z.items()}
+    if not all(place.has_rest for place in z.values()):
+        return row.agrees(rounded, max(tolerance, _ROUNDED))
+    return row.agrees(rounded, AGREE) and abs(row.precise_error(z).high) <= tolerance
+
+
+def compared(row: Given, z: Mapping[str, Precise]) -> str:
+    """What placed points have instead of a dimension, and how far it is off if digits hide it."""
+    rounded = {p: place.high for p, place in z.items()}
+    text = f"{row.shown(rounded)}, not {row.amount_text}"
+    if abs(row.error(rounded)) > AGREE:
+        return text
+    unit = " of it" if isinstance(row, Distance) else " rad"
+    return f"{text}: {abs(row.precise_error(z).high):.1e}{unit} apart"

@@ -11,8 +11,16 @@ import numpy as np
 from linkwork.foundation.elementwise import largest, smallest
 from linkwork.foundation.precise import Precise, chosen, joined, precise, sin_cos, sqrt
 from linkwork.foundation.rounding import UNIT_ROUNDOFF
-from linkwork.mechanism.link_dimension import AGREE, Distance, Given, ShapeError, VertexAngle
-from linkwork.mechanism.nearest_shape import nearest_shape
+from linkwork.mechanism.link_dimension import (
+    AGREE,
+    Distance,
+    Given,
+    ShapeError,
+    VertexAngle,
+    compared,
+    fits,
+)
+from linkwork.mechanism.nearest_shape import REDUNDANT, nearest_shape
 
 __all__ = ["LinkShape", "ShapeError", "place"]
 
@@ -183,17 +191,15 @@ def place(
             )
     known = {frozenset(d.points): Precise(d.length, d.rest) for d in (*distances, *measured)}
     state = _Placing(points, seen, known, vertices, measured)
-    rounded: dict[str, complex] = {}
-    if (lacks <= 0 or measured) and state.place_all():
-        rounded = {p: place.high for p, place in state.z.items()}
-        if all(g.agrees(rounded, AGREE) for g in given):
-            return _upright(state.z, points, measured)
+    placed = (lacks <= 0 or bool(measured)) and state.place_all()
+    if placed and all(fits(g, state.z, REDUNDANT) for g in given):
+        return _upright(state.z, points, measured)
     try:
         with np.errstate(all="ignore"):  # overflow counts as disagreement and is reported
             z, more = nearest_shape(points, seen, [*given, *measured])
     except (np.linalg.LinAlgError, ShapeError) as error:
-        if lacks < 0 and rounded:
-            raise _contradiction(given, rounded, points) from None
+        if lacks < 0 and placed:
+            raise _contradiction(given, state.z, points) from None
         if isinstance(error, ShapeError):
             raise
         raise ShapeError("no link has these dimensions near the sketch") from None
@@ -221,13 +227,13 @@ def _measurable(
 
 
 def _contradiction(
-    given: Sequence[Given], z: Mapping[str, complex], points: tuple[str, ...]
+    given: Sequence[Given], z: Mapping[str, Precise], points: tuple[str, ...]
 ) -> ShapeError:
-    worst = max(given, key=lambda g: abs(g.error(z)))
+    rounded = {p: place.high for p, place in z.items()}
+    worst = max(given, key=lambda g: abs(g.error(rounded)))
     return ShapeError(
         f"a link of {len(points)} points has {2 * len(points) - 3} dimensions, "
-        f"{len(given)} are given and disagree: "
-        f"the others give {worst.shown(z)}, not {worst.amount_text}",
+        f"{len(given)} are given and disagree: the others give {compared(worst, z)}",
         worst.table,
         worst.key,
     )

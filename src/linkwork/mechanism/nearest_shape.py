@@ -10,10 +10,23 @@ import numpy as np
 from linkwork.foundation.elementwise import choose, detached, everywhere, largest, vector
 from linkwork.foundation.lanes import Rest, rest_of
 from linkwork.foundation.precise import Precise
+from linkwork.foundation.rounding import EPSILON
 from linkwork.mechanism.least_norm import independent, least_norm
-from linkwork.mechanism.link_dimension import AGREE, Distance, Given, ShapeError, VertexAngle
+from linkwork.mechanism.link_dimension import (
+    AGREE,
+    Distance,
+    Given,
+    ShapeError,
+    VertexAngle,
+    compared,
+    fits,
+)
 
-__all__ = ["nearest_shape"]
+__all__ = ["REDUNDANT", "nearest_shape"]
+
+#: Relative, or [rad]: by how much a redundant dimension may differ from what the others give.
+REDUNDANT = 1e-14
+_HELD = 2.0 * EPSILON  # the same of dimensions that determine the shape: their rounding
 
 _MOST_STEPS = 60
 _POLISHES = 3
@@ -24,29 +37,37 @@ _FIRST_STEPS = 6  # most shapes need four
 def nearest_shape(
     points: tuple[str, ...], exact: Mapping[str, Precise], rows: Sequence[Given]
 ) -> tuple[dict[str, Precise], list[Distance]]:
-    """Solve all dimensions together, nearest to the sketch; measure there what they leave open."""
+    """Solve the dimensions together, nearest to the sketch; measure there what they leave open.
+
+    Those that follow from others in whatever place the points are, are compared only.
+    """
     sketch = {p: place.high for p, place in exact.items()}
     # the sketch selects a shape; only what is measured in it enters its dimensions
     start = {p: detached(sketch[p]) for p in points}
+    given = rows
+    rows, missing = _determining(points, given)
     held = _detached(rows)
     placed = _gauss_newton(start, held, _MOST_STEPS)
     varies = any(own is not row for own, row in zip(held, rows, strict=True))
-    missing = _missing(points, rows)
     if missing:
         placed = _nearest(placed, sketch, held, rows)
     elif varies:
         # one exact step from the solution has its derivatives (implicit function theorem)
         errors = [row.error(placed) for row in rows]
         placed = _moved(placed, least_norm(_slopes(placed, held), errors))
+    found = {p: Precise(place) for p, place in placed.items()}
     wrong = [row for row in rows if not row.agrees(placed, AGREE)]
+    if not wrong:
+        found = _polished(placed, rows) if rows else dict(exact)
+        wrong = [row for row in rows if not fits(row, found, _HELD)]
+        wrong += [row for row in given if not fits(row, found, REDUNDANT)]
     if wrong:
         raise ShapeError(
-            f"no link has these dimensions near the sketch; nearest has {wrong[0].shown(placed)}, "
-            f"not {wrong[0].amount_text}",
+            "no link has these dimensions near the sketch; "
+            f"nearest has {compared(wrong[0], found)}",
             wrong[0].table,
             wrong[0].key,
         )
-    found = _polished(placed, rows) if rows else dict(exact)
     return found, [Distance(a, b, abs(found[b] - found[a]).high) for a, b in missing]
 
 
@@ -63,8 +84,12 @@ def _polished(z: Mapping[str, complex], rows: Sequence[Given]) -> dict[str, Prec
     return found
 
 
-def _missing(points: tuple[str, ...], rows: Sequence[Given]) -> list[tuple[str, str]]:
-    """Pairs whose distances complete the dimensions of a link, in whatever place its points are."""
+def _determining(
+    points: tuple[str, ...], rows: Sequence[Given]
+) -> tuple[list[Given], list[tuple[str, str]]]:
+    """The rows that do not follow from those before, and pairs whose distances complete them, in
+    whatever place the points of a link are.
+    """
     places = np.random.default_rng(len(points)).normal(size=(len(points), 2)) @ [1.0, 1j]
     z = dict(zip(points, map(complex, places), strict=True))
     across = {frozenset((row.a, row.b)) for row in rows if isinstance(row, VertexAngle)}
@@ -72,7 +97,8 @@ def _missing(points: tuple[str, ...], rows: Sequence[Given]) -> list[tuple[str, 
     unit = [Distance(row.a, row.b, 1.0) if isinstance(row, Distance) else row for row in rows]
     candidates = [Distance(a, b, 1.0) for a, b in pairs]
     found = independent(_slopes(z, [*unit, *candidates]))
-    return [pairs[k - len(rows)] for k in found if k >= len(rows)]
+    held = [rows[k] for k in found if k < len(rows)]
+    return held, [pairs[k - len(rows)] for k in found if k >= len(rows)]
 
 
 def _nearest(

@@ -46,3 +46,32 @@ def test_of_what_does_not_change_there_is_none() -> None:
     motion = lw.example("rapier-drive").sweep()
     assert np.ptp(motion["E.y"]) < 1e-9
     assert np.isnan(motion.value("time_ratio(E.y)"))
+
+
+@pytest.mark.parametrize("law", ["cycloidal", "3-4-5", "4-5-6-7", "harmonic"])
+@pytest.mark.parametrize("start", [0.0, 7.5])
+def test_rests_are_part_of_no_stroke(law: str, start: float) -> None:
+    """A rise over 20 deg and a return over 30 deg, whatever rests between them."""
+    segments = (
+        lw.Segment(law=law, over=20, lift=10),
+        lw.Segment(law="dwell", over=60),
+        lw.Segment(law=law, over=30, lift=-10),
+        lw.Segment(law="dwell", over=250),
+    )
+    cam = lw.linkage(
+        points={"O": (0, 0), "S": (0, -50), "T": (0, 100), "P": (0, 40)},
+        links={"ground": ["O", "S", "T"], "disc": ["O"], "f": ["P"]},
+        sliders=[
+            lw.Slider(name="s", link="f", points=("P",), angle=90, on="ground", line=("S", "T"))
+        ],
+        cams=[
+            lw.Cam(
+                name="cam", cam="disc", center="O", slider="s", base=40, start=start,
+                segments=segments,
+            )
+        ],
+        inputs=lw.Input(link="disc", start=0, stop=360, step=1),
+    )  # fmt: skip
+    found = [cam.sweep(step=step).value("time_ratio(s)") for step in (1, 5, 10, 20)]
+    # 4-5-6-7 leaves a rest with the fourth power of the angle
+    assert found == pytest.approx([1.5] * 4, rel=2e-6)

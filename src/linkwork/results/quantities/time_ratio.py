@@ -2,8 +2,11 @@
 
 The input makes one turn at constant speed. The extremes of the quantity are zeros of its
 derivative, found on the cubic through its values and slopes at the rows next to them; a motion
-adds rows there, a family has those of its table. The ratio is NaN for a
-motion that is not one whole turn or does not return, and for a constant quantity.
+adds rows there, a family has those of its table. Where the quantity rests at an extreme, the stroke
+before it ends where the longest rest begins, and the stroke behind it begins where the rest ends: a
+rest is part of neither. A motion divides the steps in which a rest ends until its end is known, a
+family takes the rows. The ratio is NaN for a motion that is not one whole turn or does not return,
+and for a constant quantity.
 
 References
 ----------
@@ -14,7 +17,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from linkwork.foundation.arrays import Array
+from linkwork.foundation.arrays import Array, BoolArray, IndexArray
+from linkwork.foundation.rounding import EQUAL_ROWS, REST
 from linkwork.results.quantities.definition import (
     MotionQuantity,
     MotionRows,
@@ -24,6 +28,7 @@ from linkwork.results.quantities.definition import (
     cubic_weights,
 )
 from linkwork.results.quantities.extreme_places import (
+    NOWHERE,
     extreme_places,
     joined_places,
     roots_of_cubics,
@@ -33,22 +38,64 @@ __all__ = ["TIME_RATIO"]
 
 _Extremes = tuple[tuple[Array, Array, Array], ...]
 
+_SHORT = 1e-4  # of the turn: a rest that is shorter is an extreme
+_KNOWN = 1e-11  # of the turn: the step in which a rest ends
+_SIXTEENTHS = np.arange(1, 16) / 16.0
+_COARSE = 1.0 / 72.0  # of the turn: longer steps do not show what is between rows
+
 
 def _ratio(rows: MotionRows, _: tuple[float, ...]) -> Array:
     up = rows.ascending()
     if up is None or not up.turn or len(up.input) < 3:
         return np.full(rows.value.shape[:-1], np.nan)
-    slow, quick = _strokes(up, _extremes(up))
-    ratio = np.maximum(slow, quick) / np.minimum(slow, quick)  # eq. (63)
+    rise, fall = _strokes(up, _extremes(up))
+    ratio = np.maximum(rise, fall) / np.minimum(rise, fall)  # eq. (63)
     found: Array = np.where(up.cycle & up.moves, ratio, np.nan)
     return found
 
 
 def _strokes(rows: MotionRows, extremes: _Extremes) -> tuple[Array, Array]:
     """The parts of the turn from the smallest value to the largest one, and back."""
-    highest, lowest = (rows.input[at] + step * part for at, step, part in extremes)
-    part = np.mod(highest - lowest, rows.turn)
-    return part, rows.turn - part
+    (up, down), (out, back) = (
+        _between(rows, _rest(rows, side), *extreme)
+        for side, extreme in zip((1.0, -1.0), extremes, strict=True)
+    )
+    return np.mod(up - back, rows.turn), np.mod(out - down, rows.turn)
+
+
+def _between(
+    rows: MotionRows,
+    rest: tuple[BoolArray, IndexArray, IndexArray],
+    at: Array,
+    step: Array,
+    part: Array,
+) -> tuple[Array, Array]:
+    """Where the quantity comes to an extreme, and where it leaves it, (…,)."""
+    begin, end = (rows.input[np.mod(row, len(rows.input) - 1)] for row in rest[1:])
+    long = rest[0] & (np.mod(end - begin, rows.turn) > _SHORT * rows.turn)
+    alone = rows.input[at] + step * part
+    return np.where(long, begin, alone), np.where(long, end, alone)
+
+
+def _rest(rows: MotionRows, side: float) -> tuple[BoolArray, IndexArray, IndexArray]:
+    """Whether the quantity rests at its largest value, with side -1 the smallest, and the first and
+    the last row of the longest rest. Rows are counted on over the ends of the turn, (…,).
+    """
+    value = side * np.where(np.isfinite(rows.value), rows.value, -np.inf * side)[..., :-1]
+    last = value.shape[-1]
+    best, least = value.max(axis=-1, keepdims=True), np.fmin.reduce(value, axis=-1, keepdims=True)
+    still: BoolArray = value >= best - EQUAL_ROWS * (best - least)
+    for rate in (rows.first[..., :-1], rows.second[..., :-1]):
+        still = still & (np.abs(rate) <= REST * np.fmax.reduce(np.abs(rate), -1, keepdims=True))
+    twice = np.concatenate([still, still], axis=-1)
+    here = np.arange(2 * last)
+    begin = 1 + np.maximum.accumulate(np.where(twice, -1, here), axis=-1)
+    u = np.abs(rows.input[:-1] - rows.input[0])
+    u = np.append(u, u + rows.turn)
+    long = np.where(twice, u - u[np.minimum(begin, 2 * last - 1)], -1.0)
+    final = np.asarray(long.argmax(axis=-1))
+    first = np.take_along_axis(begin, final[..., None], axis=-1)[..., 0]
+    return np.asarray(still.any(axis=-1)), first, final
 
 
 def _slopes(rows: MotionRows, _: tuple[float, ...]) -> RowSlopes:
@@ -58,12 +105,12 @@ def _slopes(rows: MotionRows, _: tuple[float, ...]) -> RowSlopes:
     if up is None or not up.turn or len(up.input) < 3 or not (up.cycle & up.moves):
         return RowSlopes(value=np.full(count, np.nan))
     extremes = _extremes(up)
-    slow, quick = _strokes(up, extremes)
-    if not (slow and quick and np.isfinite(slow)):
-        return RowSlopes(value=np.full(count, np.nan))
+    rise, fall = _strokes(up, extremes)
+    if not (rise and fall and np.isfinite(rise)) or abs(rise + fall - up.turn) > _SHORT * up.turn:
+        return RowSlopes(value=np.full(count, np.nan))  # the end of a rest is no zero of q'
     # of two equal strokes either may be the slow one after a change
-    by_part = np.nan if slow == quick else (
-        up.turn / quick**2 if slow > quick else -up.turn / slow**2)  # fmt: skip
+    by_part = np.nan if rise == fall else (
+        up.turn / fall**2 if rise > fall else -up.turn / rise**2)  # fmt: skip
     for side, (at, step, part) in zip((1.0, -1.0), extremes, strict=True):
         pair = [int(at), (int(at) + 1) % (count - 1)]
         ends, bends = cubic_weights(float(part))
@@ -105,7 +152,20 @@ def _turning(rows: MotionRows, row: Array, side: float) -> tuple[Array, Array, A
 
 
 def _places(rows: MotionRows, _: tuple[float, ...]) -> Places:
-    return joined_places(extreme_places(rows, 1.0), extreme_places(rows, -1.0))
+    step, last = np.abs(np.diff(rows.input)), len(rows.input) - 1
+    if rows.joined is None or not rows.turn or not rows.cycle:
+        return NOWHERE
+    coarse = np.flatnonzero(rows.joined & (step > _COARSE * rows.turn))
+    if len(coarse):
+        return coarse, np.full(len(coarse), 0.5)
+    found = [extreme_places(rows, side) for side in (1.0, -1.0)]
+    for side in (1.0, -1.0):
+        rests, first, final = _rest(rows, side)
+        ends = np.unique(np.mod([int(first) - 1, int(final)], last))
+        ends = ends[rows.joined[ends] & (step[ends] > _KNOWN * rows.turn)]
+        if rests:
+            found.append((np.repeat(ends, 15), np.tile(_SIXTEENTHS, len(ends))))
+    return joined_places(*found)
 
 
 TIME_RATIO = (
