@@ -7,7 +7,13 @@ from dataclasses import replace
 import numpy as np
 
 from linkwork.design.atlas.path_atlas import Nearest
-from linkwork.design.atlas.path_shape import WAYS, coefficients, distances, in_ways
+from linkwork.design.atlas.path_shape import (
+    HARMONICS,
+    WAYS,
+    coefficients,
+    distances,
+    in_ways,
+)
 from linkwork.foundation.arrays import ComplexArray
 from linkwork.foundation.errors import InputError
 from linkwork.mechanism.linkage import Linkage
@@ -45,7 +51,11 @@ def placed_on_curve(near: Nearest, curve: ComplexArray, name: str) -> tuple[Link
     shape, centre, size = coefficients((path.conj() if mirrored else path)[None])
     wanted, goal, extent = coefficients(curve[None])
     back = WAYS[near.way][0]
-    distance, _, turn = distances(shape, in_ways(wanted[0])[1 if back else 0])
+    travelled = in_ways(wanted[0])[1 if back else 0]
+    _, shift_along, turn = distances(shape, travelled)
+    # a distance from the agreement of shapes would be exact to the root of rounding only
+    fitted = shape[0] * np.exp(1j * (HARMONICS * shift_along[0] + turn[0]))
+    gap = float(np.linalg.norm(fitted - travelled) * extent[0])
     factor = complex(extent[0] / size[0] * np.exp(1j * turn[0]))
     shift = complex(goal[0] - factor * centre[0])
     places = {point: motion.trace(point)[0] for point in design.points}
@@ -75,4 +85,4 @@ def placed_on_curve(near: Nearest, curve: ComplexArray, name: str) -> tuple[Link
         ),
         inputs=(crank,),
     )
-    return placed, float(distance[0] * extent[0])
+    return placed, gap
