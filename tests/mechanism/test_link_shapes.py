@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from itertools import combinations
 
 import numpy as np
 import pytest
@@ -93,3 +94,19 @@ def test_sides_that_do_not_reach_each_other_are_refused() -> None:
     sides = [Distance("O", "A", 1.0), Distance("A", "P", 1.0), Distance("O", "P", 2.0 + 1e-10)]
     with pytest.raises(ShapeError, match="no link has these dimensions"):
         place(("O", "A", "P"), {"O": 0j, "A": 1 + 0j, "P": 2 + 0.1j}, sides, [])
+
+
+@pytest.mark.parametrize("height", [1.0, 1e-2, 1e-4])
+def test_all_distances_of_a_flat_link_agree_to_their_rounding(height: float) -> None:
+    """Ten distances as written from coordinates, of which seven determine the link."""
+    rng = np.random.default_rng(7)
+    for _ in range(20):
+        x, y = rng.uniform(-50, 50, 5), height * rng.uniform(-50, 50, 5)
+        places = dict(zip("ABCDE", zip(x.tolist(), y.tolist(), strict=True), strict=True))
+        lengths = {f"{p} {q}": math.dist(places[p], places[q]) for p, q in combinations(places, 2)}
+        lw.linkage(
+            points={"O": (0, 0), **places},
+            links={"ground": ["O", "A"], "bar": [*places]},
+            lengths=lengths,
+            inputs=lw.Input(link="bar"),
+        )

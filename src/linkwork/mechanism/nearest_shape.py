@@ -8,7 +8,7 @@ from itertools import combinations
 import numpy as np
 
 from linkwork.foundation.elementwise import choose, detached, everywhere, largest, vector
-from linkwork.foundation.lanes import Rest, rest_of
+from linkwork.foundation.lanes import Rest, is_batched, rest_of
 from linkwork.foundation.precise import Precise
 from linkwork.foundation.rounding import EPSILON
 from linkwork.mechanism.least_norm import independent, least_norm
@@ -60,7 +60,7 @@ def nearest_shape(
     if not wrong:
         found = _polished(placed, rows) if rows else dict(exact)
         wrong = [row for row in rows if not fits(row, found, _HELD)]
-        wrong += [row for row in given if not fits(row, found, REDUNDANT)]
+        wrong += [row for row in given if not fits(row, found, _explained(row, placed, rows))]
     if wrong:
         raise ShapeError(
             "no link has these dimensions near the sketch; "
@@ -69,6 +69,14 @@ def nearest_shape(
             wrong[0].key,
         )
     return found, [Distance(a, b, abs(found[b] - found[a]).high) for a, b in missing]
+
+
+def _explained(row: Given, z: Mapping[str, complex], held: Sequence[Given]) -> float:
+    """By how much rounding of the dimensions that determine a shape changes another one."""
+    if any(map(is_batched, z.values())):
+        return REDUNDANT
+    follows = np.array(_slopes(z, [row])[0]) @ np.linalg.pinv(np.array(_slopes(z, held)))
+    return REDUNDANT + 4.0 * _HELD * float(np.abs(follows).sum())
 
 
 def _polished(z: Mapping[str, complex], rows: Sequence[Given]) -> dict[str, Precise]:
