@@ -174,8 +174,8 @@ def test_three_goals_have_a_front_that_spreads() -> None:
     values = _values(front)
     assert len(front) == 6
     assert not _dominated(values)
-    # each goal alone; the slider is nearest with the shortest crank and rod, at the input 0
-    nearest = 10.0 + math.sqrt(80.0**2 - 20.0**2) - 60.0
+    # each goal alone; the slider is nearest with the shortest crank and rod, which are in line
+    nearest = math.sqrt((10.0 + 80.0) ** 2 - 20.0**2) - 60.0
     assert values.min(axis=0) == pytest.approx([0.0, nearest, 0.0], abs=1e-4)
 
 

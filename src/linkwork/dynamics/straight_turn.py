@@ -28,6 +28,7 @@ _SINGULAR = 100.0  # condition beyond which a position is taken from its polynom
 _FIRST, _LARGEST, _SHORTEST = 0.01, 0.07, 1e-4  # steps [rad]
 _OFF = 1e-5  # weighted: how far a prediction may be from the position
 _CONTINUED = 1e-8  # weighted: how well two polynomials must agree at a crossing
+_EXACT = 1e-10  # weighted: the same for nodes that are kept
 _MOST = 4000  # steps in a turn
 _MOST_TURNS = 12  # after which a motion straight on counts as never closing
 _CLOSED = 1e-9  # weighted: how well a turn ends where it began
@@ -115,7 +116,7 @@ def turn_of(leads: Parametrizations, solver: BlockSolver, start: Array) -> Turn 
     """
     turns = 1
     begin = float(start[-1])
-    sharp = [True]  # which nodes are solutions: those next to a crossing are polynomials
+    sharp = [True]  # which nodes are kept: those next to a crossing are polynomials
     scale = solver.variable_scale
     at, v = [begin], [start]
     h = _FIRST
@@ -135,10 +136,11 @@ def turn_of(leads: Parametrizations, solver: BlockSolver, start: Array) -> Turn 
         off = float((np.abs(found.v[0] - guess) / scale).max())
         rates = solver.rates(found.v, np.ones(1))
         near = not rates.nearness[0] < _SINGULAR
-        if near and float((np.abs(doubt) / scale).max()) < _CONTINUED:
+        doubtful = float((np.abs(doubt) / scale).max())
+        if near and doubtful < _CONTINUED:
             at.append(t)
             v.append(guess)
-            sharp.append(False)
+            sharp.append(doubtful < _EXACT)
         elif found.status[0] == CONVERGED and off < _OFF and not near:
             at.append(t)
             v.append(found.v[0])
