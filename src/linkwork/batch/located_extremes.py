@@ -19,8 +19,9 @@ from linkwork.results.quantity import Kind
 __all__ = ["Peaks", "highest_values", "interpolated_extremes", "peaks_of", "step_of"]
 
 _ROWS = 9  # of a polynomial
-_PASSES, _BOLD, _SURE = 80, 4, 40  # the first solve where polynomials are largest; late ones tell
-# poles
+_PASSES = 80
+_BOLD = 4  # passes that solve where polynomials are largest, before steps are halved
+_SURE = 40  # passes after which values beyond _POLE belong to a pole
 _SOME = 24
 _POLE = 1e3  # times the values of rows: unless it is exact, there is a pole and no extreme
 _SHARP = 2.0  # of the range of values: how much an extreme may bend per step squared

@@ -98,7 +98,8 @@ def curve_of(model: Model, start: Array, policy: ChangePointPolicy, certify: boo
     ]
     if not (forward or turned):
         raise InputError(
-            "the motion would start at a change point, where branches meet: start beside it"
+            "a simulation cannot start at a change point, where branches meet: start a little "
+            "before or after it"
         )
     value = forward[0].begin if forward else turned[-1].end
     return PositionCurve(

@@ -95,7 +95,9 @@ def _switch_times(leg: ReducedLeg, s: float, edges: Array, gain: Array) -> Itera
     values = positive(edges)
     for k, number in np.argwhere(values[1:] != values[:-1]).tolist():
         low, high = edges[k : k + 2].tolist()
-        while high - low > 2.0 * math.ulp(high):
+        while high - low > 2.0 * math.ulp(
+            max(high, edges[1])
+        ):  # at t = 0 the first piece is the scale
             middle = 0.5 * (low + high)
             same = positive(np.array([middle]))[0, number] == values[k, number]
             low, high = (middle, high) if same else (low, middle)

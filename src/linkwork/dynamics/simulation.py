@@ -169,8 +169,8 @@ def _check_inertia(travel: Travel) -> None:
     )
     if here <= _WEIGHTLESS * largest:
         raise InputError(
-            "no mass moves in the first instant, as at a dead point of a crank without mass: "
-            "start elsewhere, or give masses to the bodies that move there"
+            "no body with mass moves at the start, as at a dead point of a massless crank: start "
+            "at another input, or give the crank a mass"
         )
 
 

@@ -152,6 +152,7 @@ class Travel(Passage):
             self._go_on_switched()
             return
         self.s, self.speed = state
+        self._hold()
         self._hit_passed()
 
     def _switch(self, way: float = 0.0) -> None:

@@ -180,5 +180,6 @@ def compared(row: Given, z: Mapping[str, Precise]) -> str:
     text = f"{row.shown(rounded)}, not {row.amount_text}"
     if abs(row.error(rounded)) > AGREE:
         return text
-    unit = " of it" if isinstance(row, Distance) else " rad"
-    return f"{text}: {abs(row.precise_error(z).high):.1e}{unit} apart"
+    off = abs(row.precise_error(z).high)
+    told = f"relative difference {off:.1e}" if isinstance(row, Distance) else f"{off:.1e} rad apart"
+    return f"{text} ({told})"
