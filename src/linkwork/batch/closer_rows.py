@@ -13,11 +13,10 @@ from linkwork.batch.single_sweep import with_table
 from linkwork.foundation.angles import FULL_TURN
 from linkwork.foundation.rounding import EQUAL_ROWS
 from linkwork.motion.leading_input import leading_input
+from linkwork.results.quantities.definition import CLOSE_ROWS
 from linkwork.results.quantity import Kind
 
 __all__ = ["closer_rows"]
-
-_STEPS = 72  # of a turn, or of the table
 
 
 def closer_rows(designs: Designs, rows: DesignRows, threads: int) -> tuple[Designs, DesignRows]:
@@ -28,7 +27,7 @@ def closer_rows(designs: Designs, rows: DesignRows, threads: int) -> tuple[Desig
     lead = leading_input(base.rows)[0]
     kind = Kind(base.equations.inputs[lead].kind)
     whole = FULL_TURN if kind is Kind.ANGLE else 1.0
-    parts = math.ceil(step_of(base.rows[:, lead], kind) * _STEPS / whole - EQUAL_ROWS)
+    parts = math.ceil(step_of(base.rows[:, lead], kind) * CLOSE_ROWS / whole - EQUAL_ROWS)
     if parts < 2:
         return designs, rows
     designs = replace(designs, base=with_table(base, base, parts))

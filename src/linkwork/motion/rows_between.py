@@ -24,6 +24,7 @@ from linkwork.numerics.continuation.branch_tracking import (
 from linkwork.numerics.newton import unlimited
 from linkwork.numerics.rows import SolvedRows
 from linkwork.results.motion import Motion
+from linkwork.results.quantities.definition import CLOSE_ROWS
 from linkwork.results.quantity import Kind
 
 __all__ = ["RowsBetween"]
@@ -31,9 +32,8 @@ __all__ = ["RowsBetween"]
 _MOVED = 0.1  # weighted: further from the interpolation a position may be on another branch
 _REACH = 1.0, 0.5  # weighted, and of what changes between two rows: how far positions between
 # them may be from the straight line; on another turn they are farther
-_PARTS = 72  # of a turn or of the table: the steps that show all extremes of smooth quantities,
-_OF_PIECE = 5  # parts of a piece of a cam or law,
-_MOST_PARTS = 3600  # but no more of the table
+_OF_PIECE = 5  # rows in a piece of a cam or law
+_MOST_PARTS = 3600  # of the table
 _SAME_TURN = 1.0  # of the leading input: rows named whole turns away differ by more
 
 
@@ -107,7 +107,7 @@ class RowsBetween:
             pieces = [numbers(segment.over) * unit for cam in cams for segment in cam]
         whole = FULL_TURN if kind is Kind.ANGLE else span
         least = max(min(pieces, default=np.inf) / _OF_PIECE, span / _MOST_PARTS)
-        return min(whole / _PARTS, least)
+        return min(whole / CLOSE_ROWS, least)
 
     def __call__(self, row: IndexArray, at: Array) -> Motion:
         """Positions at leading inputs (K,) between rows (K,) and the next ones.

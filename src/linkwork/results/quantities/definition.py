@@ -18,6 +18,7 @@ from linkwork.mechanism.skeleton import Skeleton
 from linkwork.results.quantity import Kind, Units
 
 __all__ = [
+    "CLOSE_ROWS",
     "UNKNOWN",
     "MechanismNames",
     "MotionQuantity",
@@ -285,6 +286,10 @@ class MotionQuantity:
     measures: str = "quantity"
     places: Callable[[MotionRows, tuple[float, ...]], Places] | None = None
     sides: tuple[float, ...] = ()
+
+
+#: Steps of a turn, or of a table of lengths or times, that show all extremes of smooth quantities.
+CLOSE_ROWS = 72
 
 
 def at_extreme(rows: MotionRows, side: float) -> Array:

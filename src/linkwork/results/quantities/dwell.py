@@ -35,7 +35,6 @@ _RIVAL = 0.03  # of the longest range: so much shorter ones are located, too
 _BESIDE = 1e-3  # of its length: a range that begins so near to another is the same one
 _WIDER = 1.03  # bands: what they hold shows extremes that only just leave the band, or do not
 _POOR = 1e-2  # of the band, or of the change over a step: cubics that miss so much are no guide
-_COARSE = 1.0 / 72.0  # of the range of the input
 _MOST_PARTS = 32  # of a step of which the cubic is no guide
 
 
@@ -139,7 +138,7 @@ def _wanted(curve: CubicCurve, joined: BoolArray, band: float) -> Places:
     rounding = 64.0 * EPSILON * np.nanmax(np.abs(f))
     allowed = np.full(len(step), _POOR * band + rounding)
     poor = (missed > allowed) & (step > EQUAL_ROWS * span)
-    poor = joined & (poor | (step > _COARSE * span))
+    poor &= joined
     found = NOWHERE
     if not poor.any():
         rivals = [x for height in (band, _WIDER * band) for x in _rivals(curve, height, _RIVAL)]
@@ -150,8 +149,8 @@ def _wanted(curve: CubicCurve, joined: BoolArray, band: float) -> Places:
         change = np.ptp(np.append(f[:-1].reshape(-1, PARTS), f[PARTS::PARTS, None], 1), axis=1)
         poor[found[0]] = (missed > _POOR * change + rounding)[found[0]]
         allowed[:] = rounding
-    more = np.clip(2.0 * (missed / allowed) ** 0.25, np.ceil(step / (_COARSE * span)), _MOST_PARTS)
-    parts = np.where(poor, np.maximum(np.ceil(np.minimum(more, _MOST_PARTS)), 2), 1).astype(np.intp)
+    more = np.clip(np.ceil(2.0 * (missed / allowed) ** 0.25), 2, _MOST_PARTS)
+    parts = np.where(poor, more, 1).astype(np.intp)
     split = np.repeat(np.arange(len(step)), parts - 1)
     first = np.repeat(np.cumsum(parts - 1) - (parts - 1), parts - 1)
     return joined_places(found, (split, (np.arange(len(split)) - first + 1) / parts[split]))

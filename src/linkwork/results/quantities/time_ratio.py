@@ -41,7 +41,6 @@ _Extremes = tuple[tuple[Array, Array, Array], ...]
 _SHORT = 1e-4  # of the turn: a rest that is shorter is an extreme
 _KNOWN = 1e-11  # of the turn: the step in which a rest ends
 _SIXTEENTHS = np.arange(1, 16) / 16.0
-_COARSE = 1.0 / 72.0  # of the turn: longer steps do not show what is between rows
 
 
 def _ratio(rows: MotionRows, _: tuple[float, ...]) -> Array:
@@ -155,9 +154,6 @@ def _places(rows: MotionRows, _: tuple[float, ...]) -> Places:
     step, last = np.abs(np.diff(rows.input)), len(rows.input) - 1
     if rows.joined is None or not rows.turn or not rows.cycle:
         return NOWHERE
-    coarse = np.flatnonzero(rows.joined & (step > _COARSE * rows.turn))
-    if len(coarse):
-        return coarse, np.full(len(coarse), 0.5)
     found = [extreme_places(rows, side) for side in (1.0, -1.0)]
     for side in (1.0, -1.0):
         rests, first, final = _rest(rows, side)
