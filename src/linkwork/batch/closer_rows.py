@@ -2,18 +2,14 @@
 
 from __future__ import annotations
 
-import math
 from dataclasses import replace
 
 from linkwork.batch.design_sweep import design_rows
 from linkwork.batch.designs import Designs
-from linkwork.batch.located_extremes import step_of
+from linkwork.batch.located_extremes import parts_of
 from linkwork.batch.rows import DesignRows
 from linkwork.batch.single_sweep import with_table
-from linkwork.foundation.angles import FULL_TURN
-from linkwork.foundation.rounding import EQUAL_ROWS
 from linkwork.motion.leading_input import leading_input
-from linkwork.results.quantities.definition import CLOSE_ROWS
 from linkwork.results.quantity import Kind
 
 __all__ = ["closer_rows"]
@@ -25,9 +21,7 @@ def closer_rows(designs: Designs, rows: DesignRows, threads: int) -> tuple[Desig
     if len(base.rows) < 2:
         return designs, rows
     lead = leading_input(base.rows)[0]
-    kind = Kind(base.equations.inputs[lead].kind)
-    whole = FULL_TURN if kind is Kind.ANGLE else 1.0
-    parts = math.ceil(step_of(base.rows[:, lead], kind) * CLOSE_ROWS / whole - EQUAL_ROWS)
+    parts = parts_of(base.rows[:, lead], Kind(base.equations.inputs[lead].kind))
     if parts < 2:
         return designs, rows
     designs = replace(designs, base=with_table(base, base, parts))

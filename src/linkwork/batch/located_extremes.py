@@ -6,17 +6,20 @@ Elsewhere they say where the design is solved once more, in place of the farthes
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
+from linkwork.foundation.angles import FULL_TURN
 from linkwork.foundation.arrays import Array, BoolArray, IndexArray
-from linkwork.foundation.rounding import EPSILON
+from linkwork.foundation.rounding import EPSILON, EQUAL_ROWS
 from linkwork.numerics.interpolated_peak import interpolated_peaks, lagrange_weights
+from linkwork.results.quantities.definition import CLOSE_ROWS
 from linkwork.results.quantity import Kind
 
-__all__ = ["Peaks", "highest_values", "interpolated_extremes", "peaks_of", "step_of"]
+__all__ = ["Peaks", "highest_values", "interpolated_extremes", "parts_of", "peaks_of", "step_of"]
 
 _ROWS = 9  # of a polynomial
 _PASSES = 80
@@ -50,6 +53,12 @@ def step_of(at: Array, kind: Kind) -> float:
     """The largest step between inputs (R,), in radians or parts of their range."""
     step = float(np.abs(np.diff(at)).max())
     return step if kind is Kind.ANGLE else step / (float(np.ptp(at)) or 1.0)
+
+
+def parts_of(at: Array, kind: Kind) -> int:
+    """Into how many parts the steps between inputs (R,) are divided to show all extremes."""
+    whole = FULL_TURN if kind is Kind.ANGLE else 1.0
+    return max(1, math.ceil(step_of(at, kind) * CLOSE_ROWS / whole - EQUAL_ROWS))
 
 
 def peaks_of(value: Array, best: Array, side: float, step: float) -> Peaks:

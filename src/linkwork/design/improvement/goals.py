@@ -7,7 +7,6 @@ max(B.transmission)``). Misses are in file units.
 
 from __future__ import annotations
 
-import math
 import re
 from abc import ABC, abstractmethod
 from collections.abc import Sequence
@@ -16,7 +15,7 @@ from typing import Any
 
 import numpy as np
 
-from linkwork.batch.located_extremes import interpolated_extremes, step_of
+from linkwork.batch.located_extremes import interpolated_extremes, parts_of, step_of
 from linkwork.design.improvement.between_rows import BetweenRows
 from linkwork.design.improvement.settings import Goal
 from linkwork.design.improvement.solved_lanes import LanePositions
@@ -47,7 +46,6 @@ _OF_FORMULA = re.compile(
 _NUMBER = "number_{}_of_the_motion"
 _ZERO = np.zeros(())
 _TILT = 4.0 * EQUAL_ROWS
-_STEP = 0.09  # between rows [rad or part of the range]: extremes between them are exact to rounding
 _STIFF = 100.0  # weight of bounds: their shifts converge faster
 _MARGIN = 1e-7  # relative: by which bounds hold in the end
 _NONE = 1e-2  # of this margin: rounding
@@ -282,7 +280,7 @@ class NumberMisses(Misses):
                 f"in each row: write min({min(others)}), max or mean"
             )
         if len(table) > 2 and there.all():
-            table = _close_rows(table, step_of(table, Kind(model.equations.inputs[0].kind)))
+            table = _divided(table, parts_of(table, Kind(model.equations.inputs[0].kind)))
             self.there = np.ones(len(table), dtype=bool)
         super().__init__(goal, table, max(asked.needs for asked in self.asked.values()))
         self.angle = model.description.angle
@@ -346,9 +344,8 @@ class NumberMisses(Misses):
         return numbers, np.where(used[:, :, None], by_x, 0.0).sum(axis=1)
 
 
-def _close_rows(table: Array, step: float) -> Array:
-    """The rows of a table, and others between them."""
-    parts = math.ceil(step / _STEP)
+def _divided(table: Array, parts: int) -> Array:
+    """A table whose steps are divided into parts."""
     row = np.arange(parts * (len(table) - 1) + 1) / parts
     return np.interp(row, np.arange(len(table)), table)
 
