@@ -244,7 +244,9 @@ def _columns(
     for name, several in wanted.items():
         for reduction in several if isinstance(several, tuple) else (several,):
             if not callable(reduction):
-                told = f'family.reduced(["{reduction}({as_name(name)})"])'
-                raise InputError(f"a mapping gives functions; numbers of a motion: {told}")
+                raise InputError(
+                    f'"{reduction}" of {as_name(name)} is not a function: write '
+                    f'family.reduced(["{reduction}({as_name(name)})"])'
+                )
             word = getattr(reduction, "__name__", "value")
             yield _Column(f"{as_name(name)}.{word}", name, reduction)

@@ -30,8 +30,9 @@ from linkwork.results.quantity import Kind
 __all__ = ["RowsBetween"]
 
 _MOVED = 0.1  # weighted: further from the interpolation a position may be on another branch
-_REACH = 1.0, 0.5  # weighted, and of what changes between two rows: how far positions between
-# them may be from the straight line; on another turn they are farther
+# from the straight line between two rows; on another turn positions are farther
+_REACH = 1.0  # weighted
+_REACH_OF_CHANGE = 0.5  # in addition, of what changes between the rows
 _OF_PIECE = 5  # rows in a piece of a cam or law
 _MOST_PARTS = 3600  # of the table
 _SAME_TURN = 1.0  # of the leading input: rows named whole turns away differ by more
@@ -178,7 +179,7 @@ class RowsBetween:
         good &= (rates.orientation == expected).all(axis=1)
         away = np.abs(done.v - left.v - (here - t[row])[:, None] / h * (right.v - left.v))
         scale = solver.variable_scale
-        good &= (away <= _REACH[0] * scale + _REACH[1] * np.abs(right.v - left.v)).all(axis=1)
+        good &= (away <= _REACH * scale + _REACH_OF_CHANGE * np.abs(right.v - left.v)).all(axis=1)
         return SolvedRows(
             v=done.v,
             first=rates.first,

@@ -137,14 +137,11 @@ def _poles(rows: MotionRows, side: float, most: float) -> list[int]:
     and still grows from row to row: rows next to an extreme are so close that it does not.
     """
     k = int(np.nan_to_num(side * rows.value, nan=-np.inf).argmax())
-    size, beside = (
-        abs(float(rows.value[k])),
-        [j for j in (k - 1, k + 1) if 0 <= j < len(rows.value)],
-    )
-    slope = abs(float(rows.first[k])) * np.abs(rows.input[beside] - rows.input[k]).min()
-    grown = (
-        slope if np.isfinite(slope) else np.fmin.reduce(np.abs(rows.value[beside] - rows.value[k]))
-    )
+    size = abs(float(rows.value[k]))
+    beside = [j for j in (k - 1, k + 1) if 0 <= j < len(rows.value)]
+    grown = abs(float(rows.first[k])) * np.abs(rows.input[beside] - rows.input[k]).min()
+    if not np.isfinite(grown):
+        grown = np.fmin.reduce(np.abs(rows.value[beside] - rows.value[k]))
     return [k] if size > most and not grown <= _GROWS * size else []
 
 
