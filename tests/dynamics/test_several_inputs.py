@@ -415,3 +415,21 @@ def test_a_stop_next_to_a_switch_is_hit_with_several_inputs(roundings: int) -> N
     motion = lw.linkage(**(CART | more)).simulate(until=0.6, step=0.2, at={"d": 5, "bar": -90})
     assert motion["d"].max() < 5.05 + 1e-9
     assert "stop of d" in motion.limit
+
+
+@pytest.mark.parametrize("load", ["-1*(t > 0.2)", "-t"])
+def test_a_stop_that_is_touched_before_it_is_pushed_holds(load: str) -> None:
+    other = lw.Slider(name="f", link="other", points=("C",), on="ground", line=("U", "V"))
+    motion = lw.linkage(
+        length="m",
+        points={"S": (0, 0), "T": (9, 0), "B": (3, 0), "U": (0, 1), "V": (9, 1), "C": (3, 1)},
+        links={"ground": ["S", "T", "U", "V"], "block": ["B"], "other": ["C"]},
+        sliders=[
+            lw.Slider(name="d", link="block", points=("B",), on="ground", line=("S", "T")), other,
+        ],
+        masses={"block": lw.Mass(mass=2), "other": lw.Mass(mass=1)},
+        loads=[lw.Load(point="C", link="other", force=(load, 0))],
+        stops=[lw.Stop(of="f", start=3)],
+        inputs=tuple(lw.Input(slider=x, start=1, stop=8, step=1) for x in "df"),
+    ).simulate(until=2, step=0.1, at={"d": 3, "f": 3})  # fmt: skip
+    assert motion["f"] == pytest.approx(3, abs=1e-12)

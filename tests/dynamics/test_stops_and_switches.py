@@ -374,3 +374,59 @@ def test_a_motion_that_turns_just_beyond_its_start_keeps_its_energy() -> None:
         motion = heavy.simulate(until=2, step=0.01, start_speed=speed, change_points="straight")
         energy = motion["kinetic_energy"] + motion["stored_energy"]
         assert np.ptp(energy) < 1e-10 * motion["kinetic_energy"].max()
+
+
+SHAFT: dict[str, Any] = {
+    "length": "m",
+    "points": {"O": (0, 0), "A": (1, 0)},
+    "links": {"ground": ["O"], "crank": ["O", "A"]},
+    "masses": {"crank": lw.Mass(mass=1, inertia=1, center=(0, 0))},
+    "inputs": lw.Input(link="crank"),
+}
+
+
+def test_a_load_of_an_angle_counts_whole_turns() -> None:
+    # a torsion pendulum of 10 rad: ω = 2 rad/s
+    spring = lw.Spring(name="k", links=("ground", "crank"), stiffness=4)
+    load = lw.Load(link="crank", torque="-4*crank*pi/180")
+    for more in ({"springs": [spring]}, {"loads": [load]}):
+        motion = lw.linkage(**SHAFT, **more).simulate(until=3, step=0.1, start_speed="20 rad/s")
+        assert motion["crank"] == pytest.approx(np.degrees(10 * np.sin(2 * motion["t"])), abs=1e-8)
+    # a load with a period of two turns, and one that differs from it by a comparison of no effect
+    ends = []
+    for formula in ("20*cos(crank/2)", "20*cos(crank/2)*(t > -1)"):
+        shaft = lw.linkage(**SHAFT, loads=[lw.Load(link="crank", torque=formula)])
+        ends.append(shaft.simulate(until=3, step=0.1, start_speed="10 rad/s")["crank"][-1])
+    assert ends[0] == pytest.approx(ends[1], abs=1e-7)
+    assert ends[0] == pytest.approx(1431.222369, abs=1e-4)
+
+
+def test_a_block_that_has_bounced_off_its_stop_does_not_rest_on_it_later() -> None:
+    # 4 N of the spring against 2 N of friction: it turns back at once
+    motion = lw.linkage(
+        **BLOCK, gravity=lw.Gravity(size="10 m/s^2"), friction={"d": lw.Friction(mu=0.1)},
+        springs=[lw.Spring(name="k", between=("S", "B"), stiffness=4, free=3)],
+        stops=[lw.Stop(of="d", start=3, restitution=0.5)],
+    ).simulate(until=1.2, step=0.1, start_speed=-4)  # fmt: skip
+    turn = motion.limit.index("rest") if "rest" in motion.limit else int(np.argmax(motion["d"]))
+    assert motion["d"][turn] == pytest.approx(4, abs=1e-2)
+    assert motion["d"][-1] < 3.95
+
+
+@pytest.mark.parametrize("force", [-50, 50])
+def test_a_slider_crank_in_line_with_its_load_is_in_equilibrium(force: float) -> None:
+    motion = lw.linkage(
+        length="m", points={"O": (0, 0), "T": (2, 0), "A": (0.3, 0), "B": (1.3, 0)},
+        links={
+            "ground": ["O", "T"], "crank": ["O", "A"], "rod": ["A", "B"], "block": ["B"],
+        },
+        sliders=[lw.Slider(name="s", link="block", points=("B",), on="ground", line=("O", "T"))],
+        masses={
+            "crank": lw.Mass(mass=1, shape="rod"), "rod": lw.Mass(mass=1, shape="rod"),
+            "block": lw.Mass(mass=2),
+        },
+        loads=[lw.Load(point="B", link="block", force=(force, 0))],
+        inputs=lw.Input(link="crank"),
+    ).simulate(until=1, step=0.25)  # fmt: skip
+    assert np.abs(motion["crank"]).max() == 0.0
+    assert "equilibrium" in motion.message

@@ -57,7 +57,7 @@ def equilibria(
     reduction, curve = start_of(model, at, policy, False)
     bounds = bounds_of(reduction.named)
     found: list[Equilibrium] = []
-    legs = [ReducedLeg(reduction, leg) for leg in curve.legs]
+    legs = [ReducedLeg(reduction, leg, curve.gain) for leg in curve.legs]
     zeros = [[*_zeros(leg)] for leg in legs]
     if all(
         ends == [tuple(leg.table.edges[[0, -1]])] for leg, ends in zip(legs, zeros, strict=True)

@@ -182,7 +182,9 @@ class InputTravel:
             self.q = self.q + BEHIND * EPSILON * size * free / float(free @ free)
 
     def _touch(self) -> None:
-        """Close the stops that are touched at the start and pushed against."""
+        """Close the stops that are touched at the start and pushed against; go behind the others,
+        which may be pushed against later.
+        """
         for number, bound in enumerate(self.bounds):
             normal = self._normal(number)
             if self._margin(number) > _rounding(bound, normal):
@@ -191,7 +193,9 @@ class InputTravel:
             pull = self.contacts.pull(number, self.q, self.speed, self.t)
             if closing == 0.0 and pull < 0.0:
                 self.contacts.active.append(number)
-        self.contacts.release(self.q, self.speed, self.t)
+            elif closing == 0.0:
+                self._let_go([number])
+        self._let_go(self.contacts.release(self.q, self.speed, self.t))
 
     def _strike_touched(self) -> None:
         """Hit the stops that are touched at the start."""

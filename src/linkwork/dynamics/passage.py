@@ -64,7 +64,9 @@ class Passage:
     def leg(self) -> ReducedLeg:
         """The leg that the motion is on."""
         if self.number not in self.legs:
-            self.legs[self.number] = ReducedLeg(self.reduction, self.curve.legs[self.number])
+            self.legs[self.number] = ReducedLeg(
+                self.reduction, self.curve.legs[self.number], self.curve.gain
+            )
         return self.legs[self.number]
 
     @property
@@ -116,6 +118,7 @@ class Passage:
         last = len(self.curve.legs) - 1 if ahead else 0
         repeats = self.curve.closed and self.reduction.of_position and not self.bounds
         repeats = repeats and not self.reduction.rubs
+        repeats = repeats and all(leg.repeats for leg in self.legs.values())
         if not repeats or self.number != last:
             return
         known = self.lapped

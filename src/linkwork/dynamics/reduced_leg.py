@@ -25,19 +25,26 @@ __all__ = ["ReducedLeg"]
 _LOOKS, _POLE = 257, 1e6  # places at which formulas are tried; times their usual value
 _ZOOMS, _ZOOM = 13, 17  # rounds down to rounding, and the places of each
 _MEETS = 1e-10  # of the longest link: ends of a spring that are nearer meet
+_LAPS = (1, -1, 2, -3, 10, -30, 100, -1000)  # in which loads are compared with those of lap 0
+_UNCHANGED = 1e-9  # of the largest load: sines of many turns are rounded so
 _BEYOND = 0.03  # of a panel: how far a step may look beyond the end of its leg
 
 
 class ReducedLeg:
-    """A leg with its tables."""
+    """A leg with its tables.
 
-    def __init__(self, reduction: Reduction, leg: Leg) -> None:
+    ``gain`` (N,): what the variables of its curve gain in a lap.
+    """
+
+    def __init__(self, reduction: Reduction, leg: Leg, gain: Array) -> None:
         self.reduction, self.leg = reduction, leg
         low, high = sorted((leg.begin, leg.end))
         #: Whether the loads are tabulated, too.
         self.passes = [self._passes(spring, low, high) for spring in reduction.springs]
         steady = reduction.of_position and not any(map(len, self.passes))
-        self.tabulates = steady and self._is_smooth(low, high)
+        #: Whether loads of position are the same in every lap: those of a torsion spring are not.
+        self.repeats = reduction.of_position and self._repeats(low, high, gain)
+        self.tabulates = steady and self.repeats and self._is_smooth(low, high)
         self.variables = reduction.model.compiled.solver.variables
         scale = reduction.model.compiled.table.variable_scale
         groups = np.concatenate([[0, 1, 1], 2 + np.arange(self.variables)])
@@ -61,6 +68,24 @@ class ReducedLeg:
         return all(
             np.isfinite(own).all() and own.max() <= _POLE * (1.0 + np.median(own)) for own in sizes
         )
+
+    def _repeats(self, low: float, high: float, gain: Array) -> bool:
+        if not gain.any() or not self.reduction.pushed:
+            return True
+        rows = self._solved(np.linspace(low, high, _LOOKS))
+        displaced = self.reduction.geometry(rows.v, rows.first, rows.second, np.zeros(_LOOKS))
+        still, zero = 0.0 * rows.v, np.zeros(_LOOKS)
+        works = [
+            self._work(
+                self.reduction.loaded(
+                    self.reduction.geometry(rows.v + lap * gain, still, still, zero)
+                ),
+                displaced,
+            )
+            for lap in (0, *_LAPS)
+        ]
+        changes = np.abs(np.array(works[1:]) - works[0])
+        return bool((changes <= _UNCHANGED * (1.0 + np.abs(works[0]).max())).all())
 
     def _passes(self, spring: Spring, low: float, high: float) -> Array:
         """The places at which a spring passes zero length, rising."""

@@ -22,6 +22,7 @@ _DEEPEST = 12  # halvings of a piece
 _RESOLVED = 1e-4  # of the largest value: last coefficients of a polynomial through the places
 _HALVINGS = 60
 _ROUNDING = 1e-14  # of the larger acceleration
+_MARGIN = 4.0  # of the change of an acceleration within rounding of the place
 _SLOW = 1e-20  # of the leg in a second: a speed that has a direction only; also of accelerations
 
 
@@ -38,8 +39,14 @@ def excesses(leg: ReducedLeg, s: float, times: Array, gain: Array, ways: Sequenc
         rubbing = None
         if leg.friction is not None:
             rubbing = Rubbing(direction=way, ways=leg.friction.ways(s, way))
-        place, pace = (np.full_like(times, x) for x in just_ahead(leg, s, way))
-        pull = way * leg.acceleration(place, pace, times, gain, rubbing)
+        near, pace = just_ahead(leg, s, way)
+        # an equilibrium between two floating-point numbers pulls away on both sides
+        pull, further = (
+            way * leg.acceleration(*(np.full_like(times, x) for x in at), times, gain, rubbing)
+            for at in ((near, pace), (2.0 * near - s, pace))
+        )
+        with np.errstate(invalid="ignore"):
+            pull = pull - _MARGIN * np.nan_to_num(np.maximum(further - pull, 0.0), posinf=0.0)
         # friction locks, but a load without a value ends the rest
         found[way] = np.where(np.isfinite(pull), pull, 0.0 if rubbing else np.inf)
     size = np.maximum(np.abs(found[1.0]), np.abs(found[-1.0]))

@@ -230,6 +230,7 @@ class Travel(Passage):
         self._hold()
         flight = bound.flight(self.leg, self.speed, self._now(), self.until)
         self.longest = 2.0 * flight or math.inf
+        self.touching = {}
         if flight == 0.0:
             self.speed, self.rubbing, self.still = 0.0, None, True
             self.touching = {math.copysign(1.0, before): number}
