@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from itertools import combinations
 
 import numpy as np
 
@@ -29,7 +30,7 @@ def loaded(mechanism: lw.Mechanism, seed: int = 0) -> lw.Mechanism:
         x, y = random.normal(size=2) * 0.3 * size * directed
         inertia = random.uniform(0.0, 1.0) * size**2
         masses[link] = lw.Mass(mass=random.uniform(0.5, 2.0), center=(x, y), inertia=inertia)
-    fixed = given.links["ground"]
+    fixed = given.links.get("ground", ())
     moved = [point for point in given.points if point not in fixed]
     points = list(random.choice(moved, 3)) if moved else []
     loads = [lw.Load(point=str(p), force=tuple(random.normal(size=2) * 10.0)) for p in points]
@@ -55,12 +56,13 @@ def sprung(mechanism: lw.Mechanism, seed: int = 0) -> lw.Mechanism:
     points = [str(p) for p in random.permutation(list(given.points))]
     links = [str(link) for link in random.permutation(list(given.links))]
     k, free, damping = random.uniform(0.1, 1.0, size=3)
+    # between two points of one link it would do nothing
+    joined = [frozenset(on) for on in given.links.values()]
+    apart = [pair for pair in combinations(points, 2) if not any(on >= {*pair} for on in joined)]
     pulls = [
-        lw.Spring(
-            name="pull", between=(points[0], points[1]), stiffness=k / size, free=free * size,
-            damping=damping,
-        )
-    ]  # fmt: skip
+        lw.Spring(name="pull", between=ends, stiffness=k / size, free=free * size, damping=damping)
+        for ends in apart[:1]
+    ]
     turning = [link for link in links if len(given.links[link]) > 1 or link == "ground"]
     if len(turning) > 1:
         pair = (turning[0], turning[1])

@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 import math
+from typing import Any
 
 import numpy as np
 import pytest
 
 import linkwork as lw
+from linkwork.results.quantities import located_rows
 from tests.campaigns.extremes import extreme_campaign
 
 STEPS = (1.0, 5.0, 10.0)
@@ -329,3 +331,24 @@ def test_extremes_at_corners_between_rows_are_exact(step: float) -> None:
     assert family.value("max(far)") == pytest.approx([0.0, 0.0], abs=1e-8)
     # polynomials across a corner are compared by their last terms
     assert family.value("max(lower)") == pytest.approx([expected] * 2, rel=1e-9)
+
+
+@pytest.mark.parametrize(
+    ("name", "link"), [("parallel-cranks", "rod"), ("scissor-three-bars", "low")]
+)
+def test_the_rounding_of_a_constant_angle_is_not_resolved(
+    name: str, link: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    longest = 0
+    columns = located_rows.columns_of
+
+    def counted(asked: Any, solved: Any, speed: float | None) -> Any:
+        nonlocal longest
+        longest += len(solved.found)
+        assert longest < 20_000
+        return columns(asked, solved, speed)
+
+    motion = lw.example(name).sweep(step=30)
+    monkeypatch.setattr(located_rows, "columns_of", counted)
+    assert motion.value(f"stroke({link})") == pytest.approx(0.0, abs=1e-12)
+    assert longest > 0

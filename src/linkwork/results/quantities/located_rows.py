@@ -19,6 +19,7 @@ __all__ = ["Between", "LocatedRows", "columns_of", "locate_rows"]
 _MOST_PASSES, _SHARP = 16, 40  # the latter for extremes that are no poles so far
 _POLE = 1e3  # times the values of the table: there may be a pole instead of an extreme,
 _GROWS = 0.1  # of the value, where it still changes so much up to the nearest row
+_MOST = 10_000  # further rows for one number: one of more than that is rounding of a constant
 _AT_ROW = 1e-12  # of the input: places so near to a row are that row
 
 
@@ -85,6 +86,7 @@ def locate_rows(
     if between is None or places is None or still or len(order) < 2:
         return LocatedRows(rows=rows, further=further, order=order)
     rows, before, count = replace(rows, joined=between.joined), order, len(order)
+    first = order
     most = _POLE * np.nanmax(np.abs(rows.value), initial=0.0)
     row, part = _places_within(rows, between.far)
     if any(each.word == asked.of.own.name for each in asked.names.further):
@@ -100,7 +102,7 @@ def locate_rows(
         fresh = np.minimum(part, 1.0 - part) * step > _AT_ROW * size
         at = np.unique(np.stack([row[fresh], part[fresh]]), axis=1)
         row, part = at[0].astype(np.intp), at[1]
-        if not len(row):
+        if not len(row) or (k and count + len(row) > len(first) + _MOST):
             break
         at = rows.input[row] + part * (rows.input[row + 1] - rows.input[row])
         more = between(before[row], at)
