@@ -40,10 +40,11 @@ def excesses(leg: ReducedLeg, s: float, times: Array, gain: Array, ways: Sequenc
         if leg.friction is not None:
             rubbing = Rubbing(direction=way, ways=leg.friction.ways(s, way))
         near, pace = just_ahead(leg, s, way)
+        speed = np.full_like(times, pace)
         # an equilibrium between two floating-point numbers pulls away on both sides
         pull, further = (
-            way * leg.acceleration(*(np.full_like(times, x) for x in at), times, gain, rubbing)
-            for at in ((near, pace), (2.0 * near - s, pace))
+            way * leg.acceleration(np.full_like(times, place), speed, times, gain, rubbing)
+            for place in (near, 2.0 * near - s)
         )
         with np.errstate(invalid="ignore"):
             pull = pull - _MARGIN * np.nan_to_num(np.maximum(further - pull, 0.0), posinf=0.0)
