@@ -9,10 +9,10 @@ import numpy as np
 
 import linkwork as lw
 from benchmarks.timing import bar, interleaved
-from linkwork.batch import Designs, designs_of
-from linkwork.foundation.arrays import Array
-from linkwork.foundation.errors import LinkworkError
-from linkwork.mechanism.varied_number import varied_numbers
+from linkwork.core.foundation.arrays import Array
+from linkwork.core.foundation.errors import LinkworkError
+from linkwork.core.mechanism.varied_numbers import varied_numbers
+from linkwork.families import Designs, designs_of
 
 __all__ = ["measure"]
 

@@ -15,8 +15,8 @@ from benchmarks.peers.linkwork_sweep import family_of
 from benchmarks.peers.pylinkage_numba import PylinkageEnsemble
 from benchmarks.peers.work import Work, four_bar_family
 from benchmarks.timing import Clock, bar, interleaved
-from linkwork.batch import Family
-from linkwork.foundation.sharing import cores
+from linkwork.core.foundation.loading import cores
+from linkwork.families import Family
 
 __all__ = ["measure", "rapier_family"]
 

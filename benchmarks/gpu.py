@@ -16,15 +16,14 @@ from dataclasses import dataclass
 import numpy as np
 
 import linkwork as lw
-from linkwork.batch import Family, latin_hypercube
-from linkwork.batch.design_sweep import TablePath
-from linkwork.batch.family_motion import FamilyMotion
-from linkwork.foundation.errors import InputError
-from linkwork.kernels.gpu.compiling import graphics_card, name_of
-from linkwork.kernels.gpu.kernel import DeviceKernel
-from linkwork.kernels.march.sweep_kernel import Steps
-from linkwork.kernels.program.execution import Execution
-from linkwork.mechanism.varied_number import varied_numbers
+from linkwork.core.foundation.errors import InputError
+from linkwork.core.mechanism.varied_numbers import varied_numbers
+from linkwork.families import Family, latin_hypercube
+from linkwork.families.compiled.execution import Execution
+from linkwork.families.design_sweep import TablePath
+from linkwork.families.family_motion import FamilyMotion
+from linkwork.families.gpu.kernel import DeviceKernel, graphics_card, name_of
+from linkwork.families.march.sweep_kernel import Steps
 
 __all__ = ["FAMILIES", "Compared", "compared", "family_of", "kernel_speed", "main"]
 

@@ -22,9 +22,9 @@ from typing import Any
 
 import linkwork as lw
 from benchmarks.processes import processor_time
-from linkwork.viewer.live.messages import encoded
-from linkwork.viewer.live.motion_picture import MotionPicture
-from linkwork.viewer.live.result_events import motion_found
+from linkwork.app.live.cycle import MotionPicture
+from linkwork.app.live.messages import encoded
+from linkwork.app.live.result_events import motion_found
 
 __all__ = ["measure"]
 
@@ -65,7 +65,7 @@ def measure(repeats: int = 7) -> bool:
     if program is None:
         print("  in a browser: not measured, chromium is not on the PATH")
         return True
-    from playwright.sync_api import sync_playwright  # noqa: PLC0415 - an extra of tests
+    from playwright.sync_api import sync_playwright
 
     printed, shown, dragged = [], [], []
     spent: Counter[str] = Counter()
@@ -139,7 +139,7 @@ def _served() -> Iterator[str]:
 
 def _over_socket() -> float:
     """Cycles per second solved and sent, with two pending requests."""
-    from websockets.sync.client import connect  # noqa: PLC0415 - an extra of the live page
+    from websockets.sync.client import connect
 
     with _served() as address:
         home, token = address.split("/#")

@@ -13,9 +13,9 @@ from statistics import median
 from typing import Any
 
 import linkwork as lw
-from linkwork.drawing.moving_scene import moving_scene
-from linkwork.mechanism.linkage import Linkage
-from linkwork.viewer import motion_page, offline_page
+from linkwork.app import motion_page, offline_page
+from linkwork.core.drawing.moving_scene import moving_scene
+from linkwork.core.mechanism.linkage import Linkage
 
 __all__ = ["measure"]
 
@@ -59,7 +59,7 @@ def measure(repeats: int = 9) -> bool:
 
 def _dragged(program: str, text: str) -> tuple[list[float], list[float]]:
     """Script and all main-thread time of every frame [ms]."""
-    from playwright.sync_api import sync_playwright  # noqa: PLC0415 - an extra of tests
+    from playwright.sync_api import sync_playwright
 
     with tempfile.TemporaryDirectory() as folder, sync_playwright() as playwright:
         target = Path(folder) / "page.html"

@@ -13,7 +13,7 @@ import numpy as np
 
 import linkwork as lw
 from benchmarks.timing import bar, seconds
-from linkwork.foundation.sharing import cores
+from linkwork.core.foundation.loading import cores
 
 __all__ = ["measure"]
 

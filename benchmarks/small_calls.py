@@ -14,13 +14,13 @@ import numpy as np
 
 import linkwork as lw
 from benchmarks.timing import bar, interleaved
-from linkwork.batch import Family, compile_kernels
-from linkwork.motion.by_kernels import kernel_rows
-from linkwork.motion.drive import Drive
-from linkwork.motion.leading_input import leading_input
-from linkwork.motion.start import first_position
-from linkwork.numerics.continuation.branch_tracking import Node, node_at
-from linkwork.numerics.newton import NewtonOptions
+from linkwork.core.motion.following import Drive
+from linkwork.core.motion.model import leading_input
+from linkwork.core.motion.solving import first_position
+from linkwork.core.numerics.branch_tracking import Node, node_at
+from linkwork.core.numerics.newton import NewtonOptions
+from linkwork.families import Family, compile_kernels
+from linkwork.families.by_kernels import kernel_rows
 
 __all__ = ["measure"]
 

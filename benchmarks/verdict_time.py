@@ -8,7 +8,7 @@ from functools import partial
 
 import linkwork as lw
 from benchmarks.timing import bar, seconds
-from linkwork.batch import compile_kernels
+from linkwork.families import compile_kernels
 from tests.campaigns.library_defects import JudgedCase, judged_change, library_cases
 
 __all__ = ["measure"]

@@ -20,8 +20,7 @@ from statistics import median
 from typing import Any
 
 from benchmarks.processes import private_memory
-from linkwork.viewer.web.pyodide_files import pyodide_files
-from linkwork.viewer.web.web_app import web_folder
+from linkwork.app.web.web_app import pyodide_files, web_folder
 
 __all__ = ["measure"]
 
@@ -116,7 +115,7 @@ def measure(repeats: int = 3) -> bool:
 
 def _visits(program: str, address: str) -> Iterator[tuple[str, float]]:
     """The figures of one browser: four visits, the last of which drags a length."""
-    from playwright.sync_api import sync_playwright  # noqa: PLC0415 - an extra of tests
+    from playwright.sync_api import sync_playwright
 
     with sync_playwright() as playwright:
         browser = playwright.chromium.launch(executable_path=program, args=["--no-sandbox"])

@@ -3,7 +3,7 @@ import { build } from "esbuild";
 import { mkdir } from "node:fs/promises";
 import { join, resolve } from "node:path";
 
-const folder = resolve(process.argv[2] ?? "../src/linkwork/viewer/static");
+const folder = resolve(process.argv[2] ?? "../src/linkwork/app/static");
 await mkdir(folder, { recursive: true });
 const common = {
   bundle: true,

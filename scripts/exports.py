@@ -11,7 +11,7 @@ from pathlib import Path
 import click
 
 import linkwork as lw
-from linkwork.foundation.errors import InputError
+from linkwork.core.foundation.errors import InputError
 from scripts.plates import READERS as PLATES, compared_plates
 from scripts.reports import READERS as REPORTS, read_report
 from scripts.robots import LOADERS, compared_robot

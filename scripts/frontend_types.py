@@ -12,8 +12,8 @@ import typing
 from dataclasses import fields, is_dataclass
 from pathlib import Path
 
-from linkwork.viewer import page_data
-from linkwork.viewer.live.typescript import typescript_types
+from linkwork.app.live.messages import typescript_types
+from linkwork.app.pages import page_data
 
 SOURCES = Path(__file__).resolve().parent.parent / "frontend" / "src"
 PLAIN = {str: "string", int: "number", float: "number", bool: "boolean", type(None): "null"}
@@ -50,7 +50,7 @@ def interface(kind: type) -> str:
 def module_text() -> str:
     """The whole file."""
     kinds = [getattr(page_data, name) for name in page_data.__all__]
-    head = "// Written by scripts/frontend types from src/linkwork/viewer/page_data.py."
+    head = "// Written by scripts/frontend types from src/linkwork/app/pages/page_data.py."
     return "\n\n".join([head, *map(interface, kinds)]) + "\n"
 
 

@@ -18,11 +18,14 @@ from PIL import Image  # comes with Matplotlib
 ROOT = Path(__file__).resolve().parents[1]
 sys.path.insert(0, str(ROOT))  # for the register of laws in the tests
 
-import linkwork as lw  # noqa: E402 - after the path is set
-from linkwork import drawing  # noqa: E402
-from linkwork.drawing.inline_svg import Inks, inline_svg  # noqa: E402
-from linkwork.drawing.theme import LIGHT  # noqa: E402
-from tests.library.laws import LAWS  # noqa: E402
+import linkwork as lw
+from linkwork.core import drawing
+from linkwork.core.drawing.scene import LIGHT
+from linkwork.core.drawing.svg import (
+    Inks,
+    inline_svg,
+)
+from tests.library.laws import LAWS
 
 PICTURES = ROOT / "docs" / "images" / "gallery"
 PAGE = ROOT / "docs" / "gallery.md"

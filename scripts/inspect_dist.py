@@ -15,10 +15,10 @@ TREE = Path(__file__).resolve().parent.parent
 PACKAGE_DATA = (
     "linkwork/py.typed",
     "linkwork/library/*.toml",
-    "linkwork/mechanism/*.toml",
-    "linkwork/textfile/*.json",
-    "linkwork/viewer/static/*.css",
-    "linkwork/viewer/static/*.js",
+    "linkwork/core/mechanism/*.toml",
+    "linkwork/core/textfile/*.json",
+    "linkwork/app/static/*.css",
+    "linkwork/app/static/*.js",
 )
 SDIST_PARTS = ("LICENSE", "README.md", "docs", "examples", "pyproject.toml", "src", "tests")
 

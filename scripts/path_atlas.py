@@ -14,13 +14,12 @@ import numpy as np
 ROOT = Path(__file__).resolve().parents[1]
 sys.path.insert(0, str(ROOT / "src"))
 
-from linkwork.batch.study import read_plan_text, run_study  # noqa: E402 - after the path is set
-from linkwork.design.atlas.path_atlas import (  # noqa: E402
-    SHIPPED,
-    PathAtlas,
-    read_atlas,
+from linkwork.families.study import (
+    read_plan_text,
+    run_study,
 )
-from linkwork.design.atlas.stored_paths import atlas_of_stores  # noqa: E402
+from linkwork.synthesis.atlas.path_atlas import SHIPPED, PathAtlas, read_atlas
+from linkwork.synthesis.atlas.stored_paths import atlas_of_stores
 
 _COUNT, _CHECKED = 20_000, 300  # designs of each plan
 _WHOLE = "count     = 1_000_000"

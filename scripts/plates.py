@@ -9,10 +9,9 @@ from importlib import import_module
 from pathlib import Path
 
 import linkwork as lw
-from linkwork.export.plates.placing import assembled
-from linkwork.export.plates.plate import PlateStack
-from linkwork.export.plates.plate_file import plates_of
-from linkwork.foundation.errors import InputError
+from linkwork.core.foundation.errors import InputError
+from linkwork.writers.plates.files import assembled, plates_of
+from linkwork.writers.plates.plate import PlateStack
 from tests.export.plate_checks import hole_error, made, overlaps, simple, solid_error
 
 __all__ = ["READERS", "compared_plates"]

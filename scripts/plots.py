@@ -16,7 +16,7 @@ from click.testing import CliRunner
 from PIL import Image  # comes with Matplotlib
 
 import linkwork as lw
-from linkwork.cli.main import linkwork
+from linkwork.core.commands.main import linkwork
 
 ROOT = Path(__file__).resolve().parents[1]
 PAGE = ROOT / "docs" / "plots.md"

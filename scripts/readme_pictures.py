@@ -14,9 +14,9 @@ from PIL import Image, ImageDraw, ImageFont
 ROOT = Path(__file__).resolve().parents[1]
 sys.path[:0] = [str(ROOT / "src")]
 
-import matplotlib as mpl  # noqa: E402
+import matplotlib as mpl
 
-import linkwork as lw  # noqa: E402
+import linkwork as lw
 
 IMAGES = ROOT / "docs" / "images"
 _FONTS = Path(mpl.get_data_path()) / "fonts" / "ttf"

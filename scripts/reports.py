@@ -7,9 +7,9 @@ from importlib import import_module
 from pathlib import Path
 
 import linkwork as lw
-from linkwork.export import Findings, template_of
-from linkwork.export.report.document import Figure, Table
-from linkwork.export.report.report import document_of, report_of
+from linkwork.writers import Findings, template_of
+from linkwork.writers.report.document import Figure, Table
+from linkwork.writers.report.report import document_of, report_of
 
 __all__ = ["READERS", "read_report"]
 

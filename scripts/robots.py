@@ -11,14 +11,12 @@ from xml.etree import ElementTree as Tree
 import numpy as np
 
 import linkwork as lw
-from linkwork.export.robot.mjcf import mjcf_of
-from linkwork.export.robot.robot import Robot
-from linkwork.export.robot.sdf import sdf_of
-from linkwork.export.robot.urdf import urdf_of
-from linkwork.foundation.errors import InputError
-from linkwork.foundation.names import GROUND
-from linkwork.mechanism.part.pairs import PairKind
-from linkwork.results.motion import Motion
+from linkwork.core.foundation.errors import InputError
+from linkwork.core.foundation.names import GROUND
+from linkwork.core.mechanism.part.part import PairKind
+from linkwork.core.results.motion import Motion
+from linkwork.writers.robot.files import mjcf_of, sdf_of, urdf_of
+from linkwork.writers.robot.robot import Robot
 
 __all__ = ["LOADERS", "compared_robot"]
 

@@ -15,23 +15,28 @@ from pathlib import Path
 ROOT = Path(__file__).resolve().parents[1]
 sys.path.insert(0, str(ROOT / "src"))
 
-import numpy as np  # noqa: E402 - after the path is set
+import numpy as np
 
-from linkwork.design.precision.path_tracking import CompiledTracker  # noqa: E402
-from linkwork.design.precision.problem import PrecisionProblem  # noqa: E402
-from linkwork.design.precision.start_sets import (  # noqa: E402
+from linkwork.circuits.homotopy.monodromy import (
+    Member,
+    first_of_each,
+    solve_and_confirm,
+)
+from linkwork.core.foundation.arrays import AnyArray
+from linkwork.synthesis.precision.problem import PrecisionProblem
+from linkwork.synthesis.precision.solving import (
     SHIPPED,
     SHIPPED_PROBLEMS,
+    CompiledTracker,
     NamedFamily,
     as_arrays,
     member_of_arrays,
     stored_member,
 )
-from linkwork.design.six_bars.start_member import SHIPPED as SHIPPED_WATT  # noqa: E402
-from linkwork.design.six_bars.watt_problem import WATT  # noqa: E402
-from linkwork.foundation.arrays import AnyArray  # noqa: E402
-from linkwork.numerics.homotopy.confirmed_member import solve_and_confirm  # noqa: E402
-from linkwork.numerics.homotopy.monodromy import Member, first_of_each  # noqa: E402
+from linkwork.synthesis.six_bars.watt import (
+    SHIPPED as SHIPPED_WATT,
+    WATT,
+)
 
 #: The shipped files and their families.
 _FILES: dict[str, tuple[Path, tuple[NamedFamily, ...]]] = {

@@ -20,16 +20,19 @@ from typing import Any
 ROOT = Path(__file__).resolve().parents[1]
 sys.path[:0] = [str(ROOT / "src"), str(ROOT)]  # the trusses are those of the tests
 
-import numpy as np  # noqa: E402 - after the path is set
+import numpy as np
 
-import linkwork as lw  # noqa: E402
-from linkwork.foundation.cache_folder import CACHE_VARIABLE  # noqa: E402
-from linkwork.numerics.homotopy import start_sets  # noqa: E402
-from linkwork.numerics.homotopy.bilinear_family import Structure  # noqa: E402
-from linkwork.numerics.homotopy.dead_point_family import DeadPointFamily  # noqa: E402
-from linkwork.numerics.homotopy.isolated_roots import Solved, solve_random_member  # noqa: E402
-from tests.campaigns.circuits import dead_inputs_of  # noqa: E402
-from tests.oracles.trusses import FIVE_LINKS, SEVEN_LINKS, Edges, edges_of, truss  # noqa: E402
+import linkwork as lw
+from linkwork.circuits.homotopy import parameter_roots as start_sets
+from linkwork.circuits.homotopy.bilinear_family import Structure
+from linkwork.circuits.homotopy.dead_point_family import DeadPointFamily
+from linkwork.circuits.homotopy.isolated_roots import (
+    Solved,
+    solve_random_member,
+)
+from linkwork.core.foundation.files import CACHE_VARIABLE
+from tests.campaigns.circuits import dead_inputs_of
+from tests.oracles.trusses import FIVE_LINKS, SEVEN_LINKS, Edges, edges_of, truss
 
 _DYAD = "Bw"  # a triangle: two links on a frame
 _GROUPS = (_DYAD, *FIVE_LINKS, *SEVEN_LINKS)

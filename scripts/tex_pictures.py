@@ -10,11 +10,11 @@ from pathlib import Path
 import numpy as np
 
 import linkwork as lw
-from linkwork.drawing.scene import Arc, Disc, Hatch, Polygon, Polyline, Primitive
-from linkwork.drawing.tikz_writer import tikz_picture
-from linkwork.foundation.arrays import Array
-from linkwork.foundation.errors import InputError
-from linkwork.foundation.units import LENGTHS
+from linkwork.core.drawing.scene import Arc, Disc, Hatch, Polygon, Polyline, Primitive
+from linkwork.core.drawing.tikz import tikz_picture
+from linkwork.core.foundation.arrays import Array
+from linkwork.core.foundation.errors import InputError
+from linkwork.core.foundation.units import LENGTHS
 
 __all__ = ["compared_picture", "has_latex"]
 

@@ -1,6 +1,6 @@
 """The library as the start page shows it: what every mechanism is for, and a small moving picture.
 
-python scripts/thumbnails.py            writes src/linkwork/viewer/library.json
+python scripts/thumbnails.py            writes src/linkwork/app/library.json
 python scripts/thumbnails.py --check    checks that it is current
 """
 
@@ -16,13 +16,16 @@ import numpy as np
 ROOT = Path(__file__).resolve().parents[1]
 sys.path[:0] = [str(ROOT / "src")]
 
-import linkwork as lw  # noqa: E402
-from linkwork.drawing.drawn_box import reach_of  # noqa: E402
-from linkwork.mechanism.figures import Contour, Disc  # noqa: E402
-from linkwork.mechanism.skeleton import Skeleton  # noqa: E402
-from linkwork.viewer.play_order import play_order  # noqa: E402
+import linkwork as lw
+from linkwork.app.pages.packing import play_order
+from linkwork.core.drawing.mechanism_scene import reach_of
+from linkwork.core.mechanism.bodies import (
+    Contour,
+    DiscFigure,
+)
+from linkwork.core.mechanism.skeleton import Skeleton
 
-TARGET = ROOT / "src" / "linkwork" / "viewer" / "library.json"
+TARGET = ROOT / "src" / "linkwork" / "app" / "library.json"
 FRAMES = 24
 SIZE = 200  # of the larger side of a picture, in whole numbers
 
@@ -75,7 +78,7 @@ def picture(
     edges: tuple[float, ...] = (),
 ) -> dict[str, Any]:
     """Coordinates in whole numbers, y down."""
-    discs = [figure for figure in skeleton.figures if isinstance(figure, Disc)]
+    discs = [figure for figure in skeleton.figures if isinstance(figure, DiscFigure)]
     around = [places.ravel(), *(places[:, names.index(d.center)] + d.radius * 1j**k
                                 for d in discs for k in range(4))]  # fmt: skip
     if edges:

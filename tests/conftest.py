@@ -10,7 +10,7 @@ import tempfile
 import pytest
 from hypothesis import settings
 
-from linkwork.kernels.program.kernel_cache import is_compiled
+from linkwork.families.compiled.code_cache import is_compiled
 
 # No profile has a deadline: the first example of a test pays for imports, and the
 # workers of a parallel run share their cores.
@@ -24,9 +24,9 @@ os.environ.setdefault("MPLBACKEND", "Agg")  # inherited by the commands that tes
 
 #: Modules that are compiled as they are loaded: what all loops share, then halves of the work.
 _COMPILED = (
-    ("linkwork.kernels.march.start_positions",),
-    ("linkwork.kernels.march.rowwise", "linkwork.kernels.march.lockstep"),
-    ("linkwork.kernels.march.independent", "linkwork.kernels.march.position_programs"),
+    ("linkwork.families.march.one_design",),
+    ("linkwork.families.march.rowwise", "linkwork.families.march.lockstep"),
+    ("linkwork.families.march.independent", "linkwork.families.march.rate_programs"),
 )
 
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import TypeVar
 
 from linkwork.api.solvable import SolvableMechanism
-from linkwork.mechanism.description import Description
+from linkwork.core.mechanism.description import Description
 
 __all__ = ["described_as"]
 

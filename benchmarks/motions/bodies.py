@@ -5,8 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import linkwork as lw
-from linkwork.mechanism.linkage import Linkage
-from linkwork.mechanism.loops import Loops
+from linkwork.core.mechanism.linkage import Linkage
+from linkwork.core.mechanism.loops import Loops
 
 __all__ = ["Bodies", "Body", "Pin", "Spring", "bodies_of"]
 

@@ -7,7 +7,7 @@ import math
 from typing import Any
 
 import linkwork as lw
-from linkwork.mechanism.loops import Loops
+from linkwork.core.mechanism.loops import Loops
 
 __all__ = ["SQUEEZER_ANGLE", "SQUEEZER_SPRING", "WINDOW_PLACES", "squeezer", "windows"]
 

@@ -12,7 +12,7 @@ from benchmarks.peers.peer import Peer, Prepared
 from benchmarks.peers.work import Work
 
 if TYPE_CHECKING:
-    from linkwork.batch import FamilyMotion
+    from linkwork.families import FamilyMotion
 
 __all__ = ["LinkworkFamily"]
 

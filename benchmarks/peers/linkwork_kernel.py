@@ -12,18 +12,18 @@ from benchmarks.peers.dyad_linkage import ComplexArray
 from benchmarks.peers.linkwork_sweep import family_of
 from benchmarks.peers.peer import Peer, Prepared
 from benchmarks.peers.work import Work
-from linkwork.foundation.arrays import Array
+from linkwork.core.foundation.arrays import Array
 
 if TYPE_CHECKING:  # compiled code is loaded by those who use it
-    from linkwork.batch.design_sweep import FamilyMarch
-    from linkwork.kernels.march.one_design import RowsOfOne
+    from linkwork.families.design_sweep import FamilyMarch
+    from linkwork.families.march.one_design import RowsOfOne
 
 __all__ = ["LinkworkKernel", "rows_of_one"]
 
 
 def rows_of_one(march: FamilyMarch, t: Array) -> RowsOfOne:
     """The rows of a family of one design, to be computed again and again."""
-    steps = import_module("linkwork.kernels.march.sweep_kernel").Steps()
+    steps = import_module("linkwork.families.march.sweep_kernel").Steps()
     return march.kernel.prepare_single(
         march.coefficients,
         march.guess[:, 0],
@@ -54,9 +54,9 @@ class LinkworkKernel(Peer):
         motion = family.sweep(certify=self.certify, threads=1, specialised=self.compiled)
         model = family.designs.base
         # compiled code is loaded by those who use it
-        path = import_module("linkwork.batch.design_sweep").TablePath.of(model)
+        path = import_module("linkwork.families.design_sweep").TablePath.of(model)
         assert path is not None
-        execution = import_module("linkwork.kernels.program.execution").Execution
+        execution = import_module("linkwork.families.compiled.interpreter").Execution
         march = path.march(family.designs, self.certify, 1, execution(specialised=self.compiled))
         t = model.rows[:, path.lead]
         t = np.ascontiguousarray(t[::-1] if path.falling else t)

@@ -14,7 +14,7 @@ from benchmarks.peers.peer import Peer, Prepared
 from benchmarks.peers.work import Work
 
 if TYPE_CHECKING:
-    from linkwork.batch import Family
+    from linkwork.families import Family
 
 __all__ = ["LinkworkSweep", "mechanism_of"]
 

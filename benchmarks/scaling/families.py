@@ -10,7 +10,7 @@ from benchmarks.peers.registry import chosen
 from benchmarks.peers.work import four_bar_family
 from benchmarks.scaling.part import Growth, grown
 from benchmarks.timing import interleaved
-from linkwork.foundation.sharing import cores
+from linkwork.core.foundation.loading import cores
 
 __all__ = ["family_sizes", "threads"]
 

@@ -13,7 +13,7 @@ def first_cycle(name: str) -> None:
     if name == "NumPy alone":
         return
     # The registry imports Linkwork, which the first line of the table must not pay for.
-    from benchmarks.peers.registry import PEERS  # noqa: PLC0415
+    from benchmarks.peers.registry import PEERS
 
     peer = next(peer for peer in PEERS if peer.name == name)
     peer.prepare(work).run()

@@ -1,5 +1,5 @@
 // Written by scripts/frontend types from the dataclasses in
-// linkwork.viewer.live.requests and linkwork.viewer.live.events: change those.
+// linkwork.app.live.requests and linkwork.app.live.events: change those.
 
 import type { PageData } from "./page_data";
 

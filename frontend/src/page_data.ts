@@ -1,4 +1,4 @@
-// Written by scripts/frontend types from src/linkwork/viewer/page_data.py.
+// Written by scripts/frontend types from src/linkwork/app/pages/page_data.py.
 
 /** The right answers to a question, any one of which will do; none may be right, or none may be `known`. */
 export interface AnswerData {

@@ -1,5 +1,5 @@
 // Lines through points as smooth curves in SVG: cubic pieces where a straight one would be seen.
-// The curves are those of src/linkwork/drawing/smooth_path.py.
+// The curves are those of src/linkwork/core/drawing/paths.py.
 
 export type Spot = readonly [number, number];
 

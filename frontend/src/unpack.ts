@@ -1,4 +1,4 @@
-// Unpacks columns packed by src/linkwork/viewer/packing.py.
+// Unpacks columns packed by src/linkwork/app/pages/packing.py.
 
 import type { PackedColumn } from "./page_data";
 

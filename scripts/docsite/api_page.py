@@ -9,8 +9,8 @@ from functools import cached_property
 from types import FunctionType
 
 import linkwork as lw
-from linkwork.foundation.internal import internal_members
-from linkwork.mechanism.part.part import Part
+from linkwork.core.foundation.errors import internal_members
+from linkwork.core.mechanism.part.part import Part
 
 __all__ = ["ALIASES", "api_page", "is_built_by_users", "public_members", "public_names"]
 
@@ -31,18 +31,18 @@ ALIASES = {
 _PROPERTIES = (property, cached_property)
 #: The parts of the page: their titles, and the packages of the names in them.
 _PARTS = (
-    ("Read and make mechanisms", ("linkwork.api", "linkwork.textfile", "linkwork.exchange")),
-    ("Parts of a mechanism", ("linkwork.mechanism", "linkwork.foundation.angles")),
-    ("Families", ("linkwork.batch",)),
+    ("Read and make mechanisms", ("linkwork.api", "linkwork.core.textfile", "linkwork.readers")),
+    ("Parts of a mechanism", ("linkwork.core.mechanism", "linkwork.core.foundation.units")),
+    ("Families", ("linkwork.families",)),
     (
         "Synthesis and improvement",
         ("linkwork.design", "linkwork.api.synthesis", "linkwork.api.path_atlas"),
     ),
-    ("Pictures and films", ("linkwork.drawing", "linkwork.viewer")),
-    ("Plates", ("linkwork.export.plates",)),
-    ("Results", ("linkwork.results", "linkwork.equations", "linkwork.numerics")),
-    ("Statuses", ("linkwork.foundation",)),
-    ("Errors", ("linkwork.foundation.errors",)),
+    ("Pictures and films", ("linkwork.core.drawing", "linkwork.app")),
+    ("Plates", ("linkwork.writers.plates",)),
+    ("Results", ("linkwork.core.results", "linkwork.core.equations", "linkwork.core.numerics")),
+    ("Statuses", ("linkwork.core.foundation",)),
+    ("Errors", ("linkwork.core.foundation.errors",)),
 )
 
 
@@ -71,8 +71,8 @@ def public_members(kind: type) -> Iterator[tuple[str, object]]:
 
 def is_built_by_users(kind: type) -> bool:
     """Whether users call the class; others are results, and the page shows no constructor."""
-    made = ("linkwork.mechanism", "linkwork.drawing.scene_options", "linkwork.viewer")
-    own = ("linkwork.results.force", "linkwork.numerics", "linkwork.export.plates.options")
+    made = ("linkwork.core.mechanism", "linkwork.core.drawing.annotations", "linkwork.app")
+    own = ("linkwork.forces.results", "linkwork.core.numerics", "linkwork.writers.plates.plate")
     return kind.__module__.startswith(made + own)
 
 

@@ -7,7 +7,7 @@ from inspect import cleandoc
 
 import click
 
-from linkwork.cli.main import linkwork
+from linkwork.core.commands.main import linkwork
 
 __all__ = ["command_page"]
 

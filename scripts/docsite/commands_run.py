@@ -13,7 +13,7 @@ from pathlib import Path
 
 from click.testing import CliRunner
 
-from linkwork.cli.main import linkwork
+from linkwork.core.commands.main import linkwork
 
 __all__ = ["Finished", "commands_of", "run_command"]
 

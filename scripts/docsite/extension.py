@@ -28,7 +28,7 @@ from sphinx.util.docutils import ReferenceRole, SphinxDirective
 from sphinx.util.inspect import stringify_signature
 
 import linkwork as lw
-from linkwork.foundation.internal import internal_members
+from linkwork.core.foundation.errors import internal_members
 from scripts.docsite import mathml, text_files
 from scripts.docsite.api_page import ALIASES, is_built_by_users
 from scripts.docsite.commands_run import commands_of, run_command

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 from typing import Any
 
-from linkwork.textfile import json_schema
+from linkwork.core.textfile import json_schema
 
 __all__ = ["file_page"]
 

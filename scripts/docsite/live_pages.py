@@ -9,8 +9,8 @@ from pathlib import Path
 from typing import Any
 
 import linkwork as lw
-from linkwork.foundation.errors import InputError
-from linkwork.textfile.link import fragment_of
+from linkwork.core.foundation.errors import InputError
+from linkwork.core.textfile.link import fragment_of
 
 __all__ = ["FOLDER", "Opened", "moving_examples", "opened", "write_library_pages"]
 

@@ -4,8 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
-from linkwork.results.quantities.index import MOTION_QUANTITIES, ROW_QUANTITIES
-from linkwork.results.quantities.registry import EVIDENCE, RATES
+from linkwork.core.results.quantities.registry import (
+    EVIDENCE,
+    MOTION_QUANTITIES,
+    RATES,
+    ROW_QUANTITIES,
+)
 
 __all__ = ["quantity_page"]
 

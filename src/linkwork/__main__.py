@@ -5,7 +5,7 @@ from __future__ import annotations
 import sys
 from importlib import import_module
 
-from linkwork.cli.interrupts import (
+from linkwork.core.commands.terminal import (
     INTERRUPTED,
     ignore_interrupts,
     leave,
@@ -21,7 +21,7 @@ def main() -> None:
     try:
         watch_interrupts()
         # imports take most of a short run, and are interrupted like the rest
-        import_module("linkwork.cli.main").main()
+        import_module("linkwork.core.commands.main").main()
     except KeyboardInterrupt:
         sys.stderr.write("\nInterrupted.\n")
         leave(INTERRUPTED)

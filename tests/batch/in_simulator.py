@@ -14,12 +14,12 @@ import numpy as np
 
 import linkwork as lw
 from benchmarks import gpu
-from linkwork.batch import Family
-from linkwork.batch.family_motion import FamilyMotion
-from linkwork.foundation.arrays import BoolArray
-from linkwork.kernels.gpu import kernel as device_kernel
-from linkwork.kernels.gpu.kernel import Chunk, DeviceKernel
-from linkwork.kernels.march.work_arrays import MarchResult
+from linkwork.core.foundation.arrays import BoolArray
+from linkwork.families import Family
+from linkwork.families.family_motion import FamilyMotion
+from linkwork.families.gpu import kernel as device_kernel
+from linkwork.families.gpu.kernel import Chunk, DeviceKernel
+from linkwork.families.march.step_trial import MarchResult
 
 ARRAYS = ("v", "status", "certification", "radius", "turns", "limits", "limit_kinds", "alone")
 

@@ -7,9 +7,9 @@ import math
 import numpy as np
 import numpy.typing as npt
 
-from linkwork.batch.family_motion import FamilyMotion
-from linkwork.results.motion import Motion
-from linkwork.results.quantity import Kind
+from linkwork.core.results.motion import Motion
+from linkwork.core.results.quantity import Kind
+from linkwork.families.family_motion import FamilyMotion
 
 __all__ = ["assert_same_evidence", "assert_same_limits", "assert_same_rates"]
 

@@ -8,11 +8,11 @@ from functools import partial
 
 import numpy as np
 
-from linkwork.batch.designs import Designs
-from linkwork.foundation.arrays import ComplexArray
-from linkwork.foundation.errors import LinkworkError
-from linkwork.kernels.phasor_rows import PhasorRows
-from linkwork.motion.model import Model
+from linkwork.core.foundation.arrays import ComplexArray
+from linkwork.core.foundation.errors import LinkworkError
+from linkwork.core.motion.model import Model
+from linkwork.core.table.rows import PhasorRows
+from linkwork.families.building import Designs
 
 __all__ = ["agree", "disagreement"]
 

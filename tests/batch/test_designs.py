@@ -9,12 +9,12 @@ import pytest
 from hypothesis import given, settings, strategies as st
 
 import linkwork as lw
-from linkwork.batch import building
-from linkwork.batch.designs import designs_of
-from linkwork.foundation.arrays import Array
-from linkwork.foundation.errors import InputError, MechanismError, UnknownNameError
-from linkwork.mechanism import nearest_shape
-from linkwork.mechanism.varied_number import VariedNumber, varied_numbers
+from linkwork.core.foundation.arrays import Array
+from linkwork.core.foundation.errors import InputError, MechanismError, UnknownNameError
+from linkwork.core.mechanism import link_shape as nearest_shape
+from linkwork.core.mechanism.varied_numbers import VariedNumber, varied_numbers
+from linkwork.families import building
+from linkwork.families.building import designs_of
 from tests.batch.single_design import agree
 from tests.thinned import thinned
 
@@ -371,7 +371,9 @@ def test_coefficients_beyond_every_number_are_a_problem() -> None:
 def test_a_term_more_than_the_base_has_is_another_structure(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
-    monkeypatch.setattr("linkwork.batch.designs.family_base", lambda model, varied: (model, False))
+    monkeypatch.setattr(
+        "linkwork.families.building.family_base", lambda model, varied: (model, False)
+    )
     designs = designs_of(_slider_crank(), {"s.offset": [0.0, 3.0]})
     assert [bool(p) for p in designs.problem] == [False, True]
     agree(designs)

@@ -10,10 +10,10 @@ import numpy.typing as npt
 import pytest
 
 import linkwork as lw
-from linkwork.batch import Family, FamilyMotion, designs_of
-from linkwork.foundation.errors import InputError, UnknownNameError
-from linkwork.foundation.status import Status
-from linkwork.mechanism.linkage import Linkage
+from linkwork.core.foundation.errors import InputError, UnknownNameError
+from linkwork.core.foundation.statuses import Status
+from linkwork.core.mechanism.linkage import Linkage
+from linkwork.families import Family, FamilyMotion, designs_of
 from tests.described import described_as
 
 Array = npt.NDArray[np.float64]
@@ -77,7 +77,7 @@ def test_reductions_do_not_depend_on_the_parts(
     family: Family, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     whole = family.reduced(["min(rocker)", "mean(rocker)"])
-    monkeypatch.setattr("linkwork.batch.family._PART", 4)
+    monkeypatch.setattr("linkwork.families.family._PART", 4)
     monkeypatch.setattr(Family.parts, "__defaults__", (4,))
     parted = family.reduced(["min(rocker)", "mean(rocker)"])
     for key, values in whole.items():
@@ -144,11 +144,11 @@ def test_no_designs_have_no_motions() -> None:
 def test_what_would_not_fit_into_memory_is_refused(
     family: Family, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr("linkwork.batch.family._MOST_BYTES", 6 * 361 * 3 * 8 - 1)
+    monkeypatch.setattr("linkwork.families.family._MOST_BYTES", 6 * 361 * 3 * 8 - 1)
     told = "6 designs × 361 rows take 0 GiB: use family.parts() or family.reduced"
     with pytest.raises(InputError, match=re.escape(told)):
         family.sweep()
-    monkeypatch.setattr("linkwork.batch.family._MOST_BYTES", 6 * 361 * 3 * 8)
+    monkeypatch.setattr("linkwork.families.family._MOST_BYTES", 6 * 361 * 3 * 8)
     assert len(family.sweep(certify=False)) == 6
 
 

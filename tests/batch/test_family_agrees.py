@@ -13,17 +13,15 @@ import pytest
 from flint import arb
 
 import linkwork as lw
-from linkwork.batch import Family, design_sweep, open_loops
-from linkwork.batch.family_motion import FamilyMotion
-from linkwork.foundation.certification import Certification
-from linkwork.foundation.status import Status
-from linkwork.kernels import march as loops
-from linkwork.kernels.march import sweep_kernel
-from linkwork.mechanism.linkage import Linkage
-from linkwork.mechanism.varied_number import varied_numbers
-from linkwork.motion import sweep
-from linkwork.motion.model import Model
-from linkwork.results.motion import Motion
+from linkwork.core.foundation.statuses import Certification, Status
+from linkwork.core.mechanism.linkage import Linkage
+from linkwork.core.mechanism.varied_numbers import varied_numbers
+from linkwork.core.motion import sweep
+from linkwork.core.motion.model import Model
+from linkwork.core.results.motion import Motion
+from linkwork.families import Family, building as open_loops, design_sweep, march as loops
+from linkwork.families.family_motion import FamilyMotion
+from linkwork.families.march import sweep_kernel
 from tests.batch.rate_referee import assert_same_evidence, assert_same_limits, assert_same_rates
 from tests.described import described_as
 from tests.library_mechanisms import driven_examples
@@ -139,7 +137,7 @@ def test_library_mechanisms_move_together_as_each_by_itself(
     name: str, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     if DRIVEN.index(name) % 2:  # as designs of a large family: in step, not rows side by side
-        monkeypatch.setattr("linkwork.kernels.march.sweep_kernel._FEW", 0)
+        monkeypatch.setattr("linkwork.families.march.sweep_kernel._FEW", 0)
     family = family_of(name, 0.999, 1.001)
     motion = family.sweep()
     assert motion.status.shape == motion.radius.shape == (2, len(motion.inputs))
@@ -172,7 +170,7 @@ def test_without_proofs_the_motions_are_the_same(name: str) -> None:
 def test_every_loop_finds_the_same_rows(
     name: str, few: int, side_by_side: bool, expected: str, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr("linkwork.kernels.march.sweep_kernel._FEW", few)
+    monkeypatch.setattr("linkwork.families.march.sweep_kernel._FEW", few)
     ways: list[str] = []
 
     def noted(way: str, inner: Callable[..., int], *arguments: object) -> int:
@@ -334,7 +332,7 @@ def test_starts_beside_the_path_are_led_to_it_together(
         motion = family.sweep(certify=certify)
         assert not motion.rows.alone.any()
         assert_agrees(family, motion, certify)
-    monkeypatch.setattr("linkwork.batch.path_entry._CHUNK", 1)  # one design after the other
+    monkeypatch.setattr("linkwork.families.design_sweep._CHUNK", 1)  # one design after the other
     again = family.sweep(certify=False)
     np.testing.assert_array_equal(again.rows.v, motion.rows.v)
 
@@ -359,7 +357,7 @@ def test_starts_that_cannot_be_led_to_the_path_go_alone() -> None:
 def test_threads_and_parts_change_nothing(monkeypatch: pytest.MonkeyPatch) -> None:
     family = lw.example("slider-crank").family({"A B": np.linspace(90.0, 110.0, 150)})
     whole = family.sweep(threads=1)
-    monkeypatch.setattr("linkwork.kernels.march.thread_shares.MOST_DESIGNS", 64)
+    monkeypatch.setattr("linkwork.families.march.sweep_kernel.MOST_DESIGNS", 64)
     parted = family.sweep(threads=3)
     np.testing.assert_array_equal(parted.rows.v, whole.rows.v)
     np.testing.assert_array_equal(parted.radius, whole.radius)

@@ -6,8 +6,8 @@ from typing import Any
 
 import pytest
 
-from linkwork.kernels import march as loops
-from linkwork.kernels.march import rowwise
+from linkwork.families import march as loops
+from linkwork.families.march import rowwise
 from tests.campaigns import families, kinds
 from tests.campaigns.motion import FAMILIES
 

@@ -8,10 +8,10 @@ import numpy as np
 import pytest
 
 import linkwork as lw
-from linkwork.batch.design_efforts import design_efforts
-from linkwork.batch.family import Family
-from linkwork.foundation.arrays import Array
-from linkwork.mechanism.linkage import Linkage
+from linkwork.core.foundation.arrays import Array
+from linkwork.core.mechanism.linkage import Linkage
+from linkwork.families.family import Family
+from linkwork.families.values import design_efforts
 from tests.design.test_force_sensitivity import FRICTION, MACHINE
 
 

@@ -14,10 +14,10 @@ import pytest
 
 import linkwork as lw
 from benchmarks import gpu
-from linkwork.batch import family as batch_family
-from linkwork.foundation.errors import InputError, MissingPackageError
-from linkwork.foundation.status import Status
-from linkwork.kernels.gpu import compiling as device_compiling
+from linkwork.core.foundation.errors import InputError, MissingPackageError
+from linkwork.core.foundation.statuses import Status
+from linkwork.families import family as batch_family
+from linkwork.families.gpu import kernel as device_compiling
 from tests.batch.in_simulator import ARRAYS, families, found
 
 pytestmark = pytest.mark.extended

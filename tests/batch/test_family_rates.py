@@ -10,10 +10,10 @@ import numpy.typing as npt
 import pytest
 
 import linkwork as lw
-from linkwork.batch import FamilyMotion
-from linkwork.foundation.errors import InputError, UnknownNameError
-from linkwork.mechanism.linkage import Linkage
-from linkwork.results.quantity import Rate
+from linkwork.core.foundation.errors import InputError, UnknownNameError
+from linkwork.core.mechanism.linkage import Linkage
+from linkwork.core.results.quantity import Rate
+from linkwork.families import FamilyMotion
 from tests.described import described_as
 
 Array = npt.NDArray[np.float64]
@@ -76,7 +76,7 @@ def test_rates_that_do_not_exist_are_refused_before_anything_is_computed(
     def refuse(*_: object) -> None:
         raise AssertionError("computed")
 
-    monkeypatch.setattr("linkwork.batch.family_motion.design_rates", refuse)
+    monkeypatch.setattr("linkwork.families.values.design_rates", refuse)
     slow = lw.example("four-bar").driven_by(link="crank", start=0, stop=90, step=45)
     told = '"rocker.velocity" needs the speed of the input: set speed in [input]'
     fresh = slow.family({"A B": [119.0, 121.0]})
@@ -126,7 +126,7 @@ def test_rates_and_limits_are_reduced_in_parts(
     motion: FamilyMotion, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     family = lw.example("four-bar").family({"O2 A": CRANKS})
-    monkeypatch.setattr("linkwork.batch.family._PART_BYTES", 3 * 8 * 361 * 7)
+    monkeypatch.setattr("linkwork.families.family._PART_BYTES", 3 * 8 * 361 * 7)
     assert family._part() == 3
     found = family.reduced({"rocker.d2": lambda v: v[:, 0]})
     fastest = family.reduced(["min(B.x.velocity)", "max(B.x.velocity)"])
@@ -141,7 +141,7 @@ def test_rates_and_limits_are_reduced_in_parts(
     assert (worst["max(residual)"][:3] < 1e-9).all()
     np.testing.assert_allclose(found["limit.lower"], motion.limits.lower, rtol=1e-12)
     np.testing.assert_allclose(found["limit.upper"], motion.limits.upper, rtol=1e-12)
-    monkeypatch.setattr("linkwork.batch.family._PART_BYTES", 1)
+    monkeypatch.setattr("linkwork.families.family._PART_BYTES", 1)
     assert family._part() == 1
 
 
@@ -165,12 +165,12 @@ def test_what_would_not_fit_into_memory_is_refused(
 ) -> None:
     family = lw.example("four-bar").family({"O2 A": CRANKS})
     fresh = family.sweep()
-    monkeypatch.setattr("linkwork.batch.rates._MOST_BYTES", 2 * 2 * 4 * 361 * 8 - 1)
+    monkeypatch.setattr("linkwork.families.values._MOST_BYTES", 2 * 2 * 4 * 361 * 8 - 1)
     with pytest.raises(InputError, match=re.escape("the rates of 4 designs × 361 rows take 0 GiB")):
         fresh["rocker.d1"]
-    monkeypatch.setattr("linkwork.batch.rates._MOST_BYTES", 2 * 2 * 4 * 361 * 8)
+    monkeypatch.setattr("linkwork.families.values._MOST_BYTES", 2 * 2 * 4 * 361 * 8)
     assert np.isfinite(fresh["rocker.d1"][0]).all()
-    monkeypatch.setattr("linkwork.batch.family_motion._MOST_BYTES", 1000)
+    monkeypatch.setattr("linkwork.families.family_motion._MOST_BYTES", 1000)
     with pytest.raises(InputError, match="quantities and rates of 4 designs take 0 GiB"):
         motion.to_xarray()
 

@@ -7,14 +7,13 @@ import pytest
 
 import linkwork as lw
 from benchmarks.peers.linkwork_kernel import rows_of_one
-from linkwork.batch import Family
-from linkwork.batch.design_sweep import FamilyMarch, TablePath
-from linkwork.kernels.march.row_proof import prove_rows
-from linkwork.kernels.march.rowwise import _is_smooth
-from linkwork.kernels.march.work_arrays import MarchResult
-from linkwork.kernels.program.execution import Execution
-from linkwork.kernels.program.interpreter import LANES
-from linkwork.mechanism.linkage import Linkage
+from linkwork.core.mechanism.linkage import Linkage
+from linkwork.core.record.recorder import LANES
+from linkwork.families import Family
+from linkwork.families.compiled.execution import Execution
+from linkwork.families.design_sweep import FamilyMarch, TablePath
+from linkwork.families.march.rowwise import _is_smooth, prove_rows
+from linkwork.families.march.step_trial import MarchResult
 from tests.described import described_as
 
 

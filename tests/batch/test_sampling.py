@@ -12,10 +12,10 @@ import pandas as pd
 import pytest
 
 import linkwork as lw
-from linkwork.batch import designs_of, from_table, grid, latin_hypercube, random, sampling
-from linkwork.batch.sampling import Normal, Uniform
-from linkwork.foundation.arrays import IndexArray
-from linkwork.foundation.errors import InputError, UnknownNameError
+from linkwork.core.foundation.arrays import IndexArray
+from linkwork.core.foundation.errors import InputError, UnknownNameError
+from linkwork.families import designs_of, from_table, grid, latin_hypercube, random, sampling
+from linkwork.families.sampling import Normal, Uniform
 
 RANGES = {"a": (30.0, 50.0), "b": (1.0, 2.0)}
 

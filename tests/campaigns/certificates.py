@@ -10,8 +10,8 @@ import numpy as np
 import numpy.typing as npt
 from flint import arb
 
-from linkwork.kernels.loop_table import LoopTable
-from linkwork.numerics.proof.kantorovich import Bounds, Majorant, Radii, expansion, weighted_radii
+from linkwork.core.numerics.kantorovich import Bounds, Majorant, Radii, expansion, weighted_radii
+from linkwork.core.table.loop_table import LoopTable
 from tests.campaigns.positions import Placed
 from tests.numerics.proof_bounds import bounds
 from tests.oracles.balls import BallTable, ball, certainly_above, exactly, newton

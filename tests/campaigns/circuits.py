@@ -8,9 +8,9 @@ from collections import Counter
 import numpy as np
 
 import linkwork as lw
-from linkwork.motion.circuit.dead_inputs import DeadPointInputs, dead_point_inputs
-from linkwork.motion.leading_input import leading_input
-from linkwork.numerics.continuation.branch_tracking import InputPath
+from linkwork.circuits.dead_inputs import DeadPointInputs, dead_point_inputs
+from linkwork.core.motion.model import leading_input
+from linkwork.core.numerics.branch_tracking import InputPath
 from tests.campaigns.motion import FAMILIES, random_mechanism
 from tests.oracles.cranked import cranked_truss
 

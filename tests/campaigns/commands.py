@@ -26,10 +26,10 @@ import click
 from click.testing import CliRunner
 
 import linkwork as lw
-from linkwork.cli.main import linkwork as program
-from linkwork.design.synthesis.solving import solve_task
-from linkwork.viewer.live.bench import Bench
-from linkwork.viewer.live.mechanism_file import MechanismFile
+from linkwork.app.live.bench import Bench
+from linkwork.app.live.mechanism_file import MechanismFile
+from linkwork.core.commands.main import linkwork as program
+from linkwork.synthesis.solvers.solving import solve_task
 from tests.campaigns.command_variants import MECHANISMS, VARIANTS, inputs_of, variant_text
 from tests.campaigns.fuzzing.witness import LIMIT, SHOWS_PROGRESS, Witness
 
@@ -183,7 +183,9 @@ class _Watch:
     def patches(self) -> Iterator[Any]:
         commands = program.list_commands(click.Context(program))
         for name in (*commands, "picture"):
-            module = import_module(f"linkwork.cli.{'import_' if name == 'import' else name}")
+            module = import_module(
+                f"linkwork.core.commands.{'import_' if name == 'import' else name}"
+            )
             for bar in ("progress", "study_progress"):
                 if hasattr(module, bar):
                     yield patch.object(module, bar, self.progress)

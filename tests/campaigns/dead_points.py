@@ -15,7 +15,7 @@ import numpy as np
 from flint import arb, ctx
 
 import linkwork as lw
-from linkwork.mechanism.loops import Loops
+from linkwork.core.mechanism.loops import Loops
 from tests.described import described_as
 
 __all__ = ["NearChangePoint", "dead_point_campaign"]

@@ -7,13 +7,12 @@ from collections import Counter
 import numpy as np
 
 from linkwork.api import Mechanism
-from linkwork.design.defects.verdicts import DefectKind, judge
-from linkwork.design.loops.candidates import Candidates, Drive, LoopKind
-from linkwork.design.poses.guiding_linkage import Design, linkage_of
-from linkwork.design.tasks.task import Task
-from linkwork.design.tasks.task_conditions import PrecisionPosition
-from linkwork.design.tasks.wishes import Wishes
-from linkwork.foundation.arrays import Array
+from linkwork.core.foundation.arrays import Array
+from linkwork.synthesis.defects.verdicts import DefectKind, judge
+from linkwork.synthesis.loops.candidates import Candidates, Drive, LoopKind
+from linkwork.synthesis.poses.guiding_linkage import Design, linkage_of
+from linkwork.synthesis.tasks.conditions import PrecisionPosition, Wishes
+from linkwork.synthesis.tasks.task import Task
 from tests.campaigns.library_defects import branches_at
 
 __all__ = ["defect_campaign", "random_designs", "verdict_by_circuits"]

@@ -8,9 +8,8 @@ import numpy as np
 import numpy.typing as npt
 
 import linkwork as lw
-from linkwork.foundation.arrays import CountArray
-from linkwork.foundation.certification import Certification
-from linkwork.foundation.status import Status
+from linkwork.core.foundation.arrays import CountArray
+from linkwork.core.foundation.statuses import Certification, Status
 
 __all__ = ["family_campaign"]
 

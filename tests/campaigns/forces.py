@@ -12,9 +12,9 @@ from functools import cache
 import numpy as np
 
 import linkwork as lw
-from linkwork.foundation.arrays import BoolArray
-from linkwork.mechanism.linkage import Linkage
-from linkwork.mechanism.loops import Loops
+from linkwork.core.foundation.arrays import BoolArray
+from linkwork.core.mechanism.linkage import Linkage
+from linkwork.core.mechanism.loops import Loops
 from tests.forces.random_loads import loaded, rubbed, sprung
 
 __all__ = ["force_campaign"]

@@ -12,8 +12,8 @@ from collections.abc import Iterator
 import numpy as np
 
 import linkwork as lw
-from linkwork.foundation.errors import LinkworkError
-from linkwork.results.motion import Motion
+from linkwork.core.foundation.errors import LinkworkError
+from linkwork.core.results.motion import Motion
 from tests.campaigns.library_defects import MECHANISMS, branches_at
 
 __all__ = ["goal_campaign"]

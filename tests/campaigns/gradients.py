@@ -17,17 +17,16 @@ from functools import cached_property
 import numpy as np
 
 import linkwork as lw
-from linkwork.design.derivatives.differentiable_numbers import chosen_numbers
-from linkwork.design.derivatives.differentiated_forces import LoadedRows
-from linkwork.foundation.arrays import Array, BoolArray
-from linkwork.foundation.errors import InputError, LinkworkError
-from linkwork.mechanism.linkage import Linkage
-from linkwork.mechanism.loops import Loops
-from linkwork.mechanism.varied_number import VariedNumber, with_numbers
-from linkwork.motion.leading_input import leading_input
-from linkwork.motion.model import Model, model_of
-from linkwork.motion.named_quantities import RowValues
-from linkwork.results.quantity import Kind
+from linkwork.core.foundation.arrays import Array, BoolArray
+from linkwork.core.foundation.errors import InputError, LinkworkError
+from linkwork.core.mechanism.linkage import Linkage
+from linkwork.core.mechanism.loops import Loops
+from linkwork.core.mechanism.varied_numbers import VariedNumber, with_numbers
+from linkwork.core.motion.model import Model, leading_input, model_of
+from linkwork.core.motion.positions import RowValues
+from linkwork.core.results.quantity import Kind
+from linkwork.design.derivatives.forces import LoadedRows
+from linkwork.design.derivatives.rows import chosen_numbers
 from tests.design.extrapolated import own_position
 from tests.forces.random_loads import loaded
 from tests.library_mechanisms import driven_examples, read_example

@@ -17,8 +17,8 @@ from typing import Any
 import numpy as np
 
 import linkwork as lw
-from linkwork.foundation.arrays import Array
-from linkwork.mechanism.linkage import Linkage
+from linkwork.core.foundation.arrays import Array
+from linkwork.core.mechanism.linkage import Linkage
 from tests.campaigns import printed_curves as printed
 
 __all__ = ["CURVES", "PARTS", "Curve", "improvement_campaign", "solve_curve_task", "squares"]

@@ -10,9 +10,9 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from linkwork.batch import FamilyMotion
-from linkwork.foundation.certification import Certification
-from linkwork.mechanism.loops import Loops
+from linkwork.core.foundation.statuses import Certification
+from linkwork.core.mechanism.loops import Loops
+from linkwork.families import FamilyMotion
 from tests.campaigns.motion import FAMILIES, Case, changed_branch, random_case
 from tests.described import described_as
 

@@ -12,10 +12,10 @@ from itertools import pairwise
 import numpy as np
 
 import linkwork as lw
-from linkwork.design.defects.verdicts import DefectKind
-from linkwork.foundation.arrays import Array, ComplexArray, IndexArray
-from linkwork.foundation.circuit_end import CircuitEnd
-from linkwork.results.circuits import Circuit, Circuits
+from linkwork.circuits.results import Circuit, Circuits
+from linkwork.core.foundation.arrays import Array, ComplexArray, IndexArray
+from linkwork.core.foundation.statuses import CircuitEnd
+from linkwork.synthesis.defects.verdicts import DefectKind
 
 __all__ = [
     "MECHANISMS",

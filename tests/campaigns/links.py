@@ -13,8 +13,8 @@ from importlib import resources
 import numpy as np
 
 import linkwork as lw
-from linkwork.textfile.link import LONGEST, fragment_of, is_link, text_of_link
-from linkwork.textfile.toml_text import LARGEST
+from linkwork.core.textfile.link import LONGEST, fragment_of, is_link, text_of_link
+from linkwork.core.textfile.toml_text import LARGEST
 from tests.campaigns.fuzzing.odd import pick
 from tests.campaigns.fuzzing.texts import changed_bytes, library_text
 from tests.campaigns.fuzzing.witness import Witness
@@ -31,7 +31,7 @@ _REPEATED = (b"\0", b"a", b"#", b"[[", b"\n", b"x = 1\n", b"\xff", "é".encode()
 
 def squeezed(data: bytes) -> bytes:
     """Raw deflate of any bytes, with the dictionary of links."""
-    words = resources.files("linkwork.textfile") / "link_words.txt"
+    words = resources.files("linkwork.core.textfile") / "link_words.txt"
     packer = zlib.compressobj(
         9, zlib.DEFLATED, -15, 9, zlib.Z_DEFAULT_STRATEGY, words.read_text("utf-8").encode()
     )
@@ -115,7 +115,7 @@ def _spoiled(rng: np.random.Generator, witness: Witness) -> None:
 
 def _slowly(packed: bytes) -> bytes | None:
     """The same bytes, unpacked one by one; ``None`` if they do not end where the text ends."""
-    words = resources.files("linkwork.textfile") / "link_words.txt"
+    words = resources.files("linkwork.core.textfile") / "link_words.txt"
     inflater = zlib.decompressobj(-15, words.read_text("utf-8").encode())
     found = b"".join(inflater.decompress(packed[k : k + 1]) for k in range(len(packed)))
     return found if inflater.eof and not inflater.unused_data else None

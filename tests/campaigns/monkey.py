@@ -15,10 +15,10 @@ from pathlib import Path
 from typing import Any
 
 import linkwork as lw
-from linkwork.mechanism.draft import Draft
-from linkwork.viewer.live.mechanism_file import MechanismFile, blank_sheet
-from linkwork.viewer.live.server import LiveServer
-from linkwork.viewer.live.workbench import Workbench
+from linkwork.app.live.mechanism_file import MechanismFile, blank_sheet
+from linkwork.app.live.server import LiveServer
+from linkwork.app.live.workbench import Workbench
+from linkwork.core.mechanism.linkage import Draft
 
 __all__ = ["monkey_at", "monkey_campaign"]
 

@@ -16,9 +16,9 @@ import numpy as np
 import numpy.typing as npt
 
 import linkwork as lw
-from linkwork.foundation.status import Status
-from linkwork.numerics.newton import NewtonOptions
-from linkwork.results.quantity import Kind
+from linkwork.core.foundation.statuses import Status
+from linkwork.core.numerics.newton import NewtonOptions
+from linkwork.core.results.quantity import Kind
 
 __all__ = [
     "FAMILIES",

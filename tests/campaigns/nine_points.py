@@ -9,7 +9,7 @@ from functools import cache
 import numpy as np
 
 from linkwork.api.synthesis import Task
-from linkwork.numerics.homotopy.bilinear_homotopy import normal_numbers
+from linkwork.circuits.homotopy.bilinear_homotopy import normal_numbers
 
 __all__ = ["nine_point_campaign"]
 

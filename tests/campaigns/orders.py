@@ -12,16 +12,15 @@ from typing import Any
 import numpy as np
 
 import linkwork as lw
-from linkwork.expression.grammar import parse, parse_equation
-from linkwork.expression.tree import Binary, Name, Negative, Node, Number
-from linkwork.expression.writing import text
-from linkwork.foundation.angles import AngleUnit
-from linkwork.foundation.names import GROUND, canonical
-from linkwork.mechanism.linkage import Linkage
-from linkwork.mechanism.loops import Loops
-from linkwork.mechanism.part.index import PARTS
-from linkwork.motion.start import first_position
-from linkwork.numerics.newton import NewtonOptions
+from linkwork.core.expression.grammar import parse, parse_equation
+from linkwork.core.expression.tree import Binary, Name, Negative, Node, NumberNode, text
+from linkwork.core.foundation.names import GROUND, canonical
+from linkwork.core.foundation.units import AngleUnit
+from linkwork.core.mechanism.linkage import Linkage
+from linkwork.core.mechanism.loops import Loops
+from linkwork.core.mechanism.part.index import PARTS
+from linkwork.core.motion.solving import first_position
+from linkwork.core.numerics.newton import NewtonOptions
 from tests.campaigns.motion import FAMILIES
 from tests.campaigns.snapshot_mechanisms import mechanism_of, names_of
 from tests.described import described_as
@@ -293,7 +292,7 @@ def _terms(node: Node, sign: int) -> list[tuple[Node, int]]:
             return [*_terms(left, sign), *_terms(right, -sign)]
         case Negative(operand):
             return _terms(operand, -sign)
-        case Number(value=0.0):
+        case NumberNode(value=0.0):
             return []
     return [(node, sign)]
 

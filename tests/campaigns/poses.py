@@ -6,9 +6,9 @@ from collections import Counter
 
 import numpy as np
 
-from linkwork.design.poses.dyad_set import DyadSet, PoseSet
-from linkwork.design.poses.dyads import solve_five_poses
-from linkwork.foundation.arrays import Array, ComplexArray
+from linkwork.core.foundation.arrays import Array, ComplexArray
+from linkwork.synthesis.poses.dyad_set import DyadSet, PoseSet
+from linkwork.synthesis.poses.dyads import solve_five_poses
 from tests.oracles.burmester import crank_turns
 
 __all__ = ["pose_campaign", "random_poses"]

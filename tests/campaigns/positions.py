@@ -9,9 +9,8 @@ import numpy as np
 import numpy.typing as npt
 
 import linkwork as lw
-from linkwork.kernels.loop_table import LoopTable
-from linkwork.kernels.phasor_rows import PhasorRows
-from linkwork.kernels.real_rows import LinearRows
+from linkwork.core.table.loop_table import LoopTable
+from linkwork.core.table.rows import LinearRows, PhasorRows
 
 __all__ = ["Placed", "closed", "library_positions", "random_position"]
 

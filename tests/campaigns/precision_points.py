@@ -10,12 +10,16 @@ from collections import Counter
 
 import numpy as np
 
-from linkwork.design.precision.path_tracking import CompiledTracker
-from linkwork.design.precision.positions import PrecisionPositions
-from linkwork.design.precision.solving import PrecisionFourBars, four_bars_through
-from linkwork.design.precision.start_sets import SHIPPED_PROBLEMS, start_member
-from linkwork.foundation.arrays import Array, ComplexArray
-from linkwork.numerics.homotopy.bilinear_homotopy import normal_numbers
+from linkwork.circuits.homotopy.bilinear_homotopy import normal_numbers
+from linkwork.core.foundation.arrays import Array, ComplexArray
+from linkwork.synthesis.precision.positions import PrecisionPositions
+from linkwork.synthesis.precision.solving import (
+    SHIPPED_PROBLEMS,
+    CompiledTracker,
+    PrecisionFourBars,
+    four_bars_through,
+    start_member,
+)
 
 __all__ = ["precision_campaign"]
 

@@ -16,7 +16,7 @@ import numpy as np
 import tomlkit
 
 import linkwork as lw
-from linkwork.mechanism.linkage import Linkage
+from linkwork.core.mechanism.linkage import Linkage
 from tests.campaigns.motion import FAMILIES, random_case
 from tests.described import described_as
 from tests.equations.linkages import LINKAGES

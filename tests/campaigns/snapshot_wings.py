@@ -19,11 +19,11 @@ from typing import Any
 import numpy as np
 
 import linkwork as lw
-from linkwork.batch.study import run_study
-from linkwork.batch.study.plan_file import read_plan_text
-from linkwork.mechanism.linkage import Linkage
-from linkwork.viewer.live.task.templates import template_names, template_text
-from linkwork.viewer.page_building import motion_page
+from linkwork.app.pages.page_building import motion_page
+from linkwork.app.task.templates import template_names, template_text
+from linkwork.core.mechanism.linkage import Linkage
+from linkwork.families.study import run_study
+from linkwork.families.study.plan import read_plan_text
 from tests.campaigns.snapshot import Record, attempt, record_of
 
 __all__ = ["record_of_any", "wing_names"]

@@ -7,12 +7,12 @@ from dataclasses import replace
 import numpy as np
 import numpy.typing as npt
 
-from linkwork.kernels.loop_table import LoopTable
-from linkwork.numerics.block_solver import BlockSolver
-from linkwork.numerics.continuation.branch_tracking import InputPath
-from linkwork.numerics.continuation.path_proof import prove_path
-from linkwork.numerics.proof.position_proof import prove, reach, rounding_of_inputs, steps_connected
-from linkwork.numerics.rows import SolvedRows
+from linkwork.core.numerics.block_solver import BlockSolver
+from linkwork.core.numerics.branch_tracking import InputPath
+from linkwork.core.numerics.path_proof import prove_path
+from linkwork.core.numerics.position_proof import prove, reach, rounding_of_inputs, steps_connected
+from linkwork.core.numerics.system import SolvedRows
+from linkwork.core.table.loop_table import LoopTable
 from tests.campaigns.certificates import Verdict
 from tests.campaigns.positions import closed
 from tests.numerics.systems import Term, blocks_of, loop_table

@@ -13,7 +13,7 @@ from pathlib import Path
 
 import numpy as np
 
-from linkwork.batch.study import verify_store
+from linkwork.families.study import verify_store
 from tests.batch.study.plans import contents
 
 __all__ = ["study_campaign"]

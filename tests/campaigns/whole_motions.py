@@ -14,12 +14,12 @@ from itertools import combinations
 import numpy as np
 
 from linkwork.api import Mechanism
-from linkwork.design.improvement.motion_bounds import Contact
-from linkwork.design.improvement.whole_motion import WholeMotion
-from linkwork.foundation.arrays import Array, ComplexArray
-from linkwork.foundation.names import GROUND
-from linkwork.mechanism.draft import Draft
-from linkwork.results.motion import Motion
+from linkwork.core.foundation.arrays import Array, ComplexArray
+from linkwork.core.foundation.names import GROUND
+from linkwork.core.mechanism.linkage import Draft
+from linkwork.core.results.motion import Motion
+from linkwork.synthesis.improvement.settings import Contact
+from linkwork.synthesis.improvement.whole_motion import WholeMotion
 from tests.library_mechanisms import driven_examples, read_example
 
 __all__ = ["EVERY", "distances", "whole_motion_campaign"]

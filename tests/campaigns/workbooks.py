@@ -17,7 +17,7 @@ from typing import Any
 import openpyxl
 
 import linkwork as lw
-from linkwork.mechanism.linkage import Linkage
+from linkwork.core.mechanism.linkage import Linkage
 from tests.export.coarse import coarse
 from tests.forces.random_loads import loaded
 from tests.library_mechanisms import driven_examples, read_example

@@ -12,10 +12,9 @@ import numpy as np
 import pytest
 
 import linkwork as lw
-from linkwork.motion import circuit_list
-from linkwork.motion.circuit import walks
-from linkwork.motion.circuit.seeding import Seeding
-from linkwork.numerics.continuation import curve_proof
+from linkwork.circuits import arcs as walks, circuit_list
+from linkwork.circuits.circuit_list import Seeding
+from linkwork.core.numerics import curve_proof
 from tests.oracles.four_bar import FourBar
 from tests.oracles.trains import Loop, train
 from tests.thinned import thinned

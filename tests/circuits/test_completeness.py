@@ -7,7 +7,7 @@ import pytest
 
 import linkwork as lw
 from linkwork import Completeness
-from linkwork.motion.circuit.intervals import intervals_between
+from linkwork.circuits.dead_inputs import intervals_between
 from tests.campaigns.circuits import dead_inputs_of, judge_circuits
 from tests.campaigns.motion import FAMILIES, random_mechanism
 from tests.laws.mechanisms import NAMES, mechanism_of
@@ -113,7 +113,7 @@ def test_where_dead_points_may_be_missing_the_reason_is_told() -> None:
 def test_lists_that_fail_in_an_interval_are_tried_elsewhere_then_told(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
-    monkeypatch.setattr("linkwork.motion.circuit.seeding.REGULAR_CONDITION", 0.0)
+    monkeypatch.setattr("linkwork.core.foundation.rounding.REGULAR_CONDITION", 0.0)
     found = lw.example("rapier-drive-limited").circuits(certify=False)
     assert found.completeness is Completeness.NOT_PROVED
     assert found.message == (

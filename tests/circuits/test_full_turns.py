@@ -8,10 +8,10 @@ import numpy as np
 import pytest
 
 import linkwork as lw
-from linkwork.motion import by_kernels
-from linkwork.motion.circuit import full_turn as module, walks
-from linkwork.motion.curve_branches import TracedCurve
-from linkwork.numerics.rows import SolvedRows
+from linkwork.circuits import arcs as module, arcs as walks
+from linkwork.circuits.branches import TracedCurve
+from linkwork.core.numerics.system import SolvedRows
+from linkwork.families import by_kernels
 from tests.circuits.test_circuits import four_bar
 from tests.library_mechanisms import read_example
 from tests.oracles.four_bar import FourBar

@@ -10,9 +10,9 @@ import pytest
 from flint import arb, ctx
 
 import linkwork as lw
-from linkwork.equations.parametrized_table import ParametrizedTable
-from linkwork.motion.leading_input import leading_input
-from linkwork.numerics.continuation.branch_tracking import InputPath
+from linkwork.core.equations.compiling import ParametrizedTable
+from linkwork.core.motion.model import leading_input
+from linkwork.core.numerics.branch_tracking import InputPath
 from tests.oracles.four_bar import FourBar, random_crank_rockers
 from tests.thinned import thinned
 

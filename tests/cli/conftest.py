@@ -11,7 +11,7 @@ from pathlib import Path
 import pytest
 from click.testing import CliRunner, Result
 
-from linkwork.cli.main import linkwork
+from linkwork.core.commands.main import linkwork
 
 FOUR_BAR = """\
 format = 1

@@ -5,8 +5,8 @@ from __future__ import annotations
 import json
 
 import linkwork as lw
-from linkwork.results.configurations import PathCount
-from linkwork.results.listing.configuration_listing import path_sentence
+from linkwork.circuits.listing import path_sentence
+from linkwork.circuits.results import PathCount
 from tests.cli.conftest import Run
 
 FOUR_BAR_LISTED = """\

@@ -8,8 +8,8 @@ from types import SimpleNamespace
 
 import pytest
 
-from linkwork.cli import main as program
-from linkwork.foundation.errors import LinkworkError
+from linkwork.core.commands import main as program
+from linkwork.core.foundation.errors import LinkworkError
 from tests.cli.conftest import Run
 
 COMMANDS = ("check", "equations", "solve", "sweep")
@@ -198,7 +198,7 @@ def _failing(monkeypatch: pytest.MonkeyPatch, trouble: BaseException) -> None:
     def fail(*_: object) -> None:
         raise trouble
 
-    monkeypatch.setattr("linkwork.cli.solve.read_mechanism", fail)
+    monkeypatch.setattr("linkwork.core.commands.options.read_mechanism", fail)
 
 
 def test_our_fault_ends_with_3_and_asks_to_report(

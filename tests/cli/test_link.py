@@ -10,9 +10,9 @@ from pathlib import Path
 import pytest
 
 import linkwork as lw
-from linkwork.textfile.link import fragment_of, text_of_link
-from linkwork.viewer.live.requests import Save
-from linkwork.viewer.live.server import LiveServer
+from linkwork.app.live.requests import Save
+from linkwork.app.live.server import LiveServer
+from linkwork.core.textfile.link import fragment_of, text_of_link
 from tests.cli.conftest import FOUR_BAR, Run
 
 APP = "https://example.org/linkwork/"
@@ -85,7 +85,7 @@ def test_the_mechanism_of_a_link_is_edited_under_a_free_name(
             tell()
             self._workbench.handle(Save())
 
-    monkeypatch.setattr("linkwork.cli.view.LiveServer", Unserved)
+    monkeypatch.setattr("linkwork.app.live.server.LiveServer", Unserved)
     for name in ("linked.toml", "linked2.toml", "linked3.toml"):
         done = run("view", LINK, "--no-browser", "--json")
         assert json.loads(done.stdout)["file"] == name

@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 
 import linkwork as lw
-from linkwork.textfile.reader import read_draft
+from linkwork.core.textfile.reader import read_draft
 from tests.cli.conftest import Run
 
 

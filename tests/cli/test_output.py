@@ -15,9 +15,9 @@ import pytest
 
 import linkwork as lw
 from linkwork.api import example_text, load
-from linkwork.cli import output_file
-from linkwork.foundation.errors import InputError
-from linkwork.results.motion_table import table_of
+from linkwork.core.commands import options as output_file
+from linkwork.core.foundation.errors import InputError
+from linkwork.core.results.motion_table import table_of
 from tests.cli.conftest import Run
 
 

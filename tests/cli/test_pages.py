@@ -11,8 +11,8 @@ import click
 import pytest
 
 from linkwork.api import example_text, examples, load
-from linkwork.cli.check import check_lines
-from linkwork.cli.main import linkwork
+from linkwork.core.commands.check import check_lines
+from linkwork.core.commands.main import linkwork
 from tests.cli.conftest import FILES, Run
 from tests.thinned import thinned
 

@@ -20,8 +20,7 @@ from tests.thinned import thinned
 
 #: Nothing is followed when the position asked for is the guess's own.
 FOR_MOTION = {
-    f"linkwork.numerics.continuation.{name}"
-    for name in ("branch_tracking", "curve_tracing", "path_proof")
+    f"linkwork._dropped.{name}" for name in ("branch_tracking", "curve_tracing", "path_proof")
 }
 HEAVY = {"matplotlib", "networkx", "numba", "pandas", "rich", "scipy", "xarray"}
 
@@ -29,7 +28,7 @@ HEAVY = {"matplotlib", "networkx", "numba", "pandas", "rich", "scipy", "xarray"}
 def test_solve_loads_nothing_heavy(environment: dict[str, str]) -> None:
     program = (
         "import json, sys\n"
-        "from linkwork.cli.main import linkwork\n"
+        "from linkwork.core.commands.main import linkwork\n"
         "linkwork(['solve', 'four-bar.toml', '--show-steps'], standalone_mode=False)\n"
         "json.dump(list(sys.modules), sys.stderr)\n"
     )
@@ -39,7 +38,7 @@ def test_solve_loads_nothing_heavy(environment: dict[str, str]) -> None:
     loaded = json.loads(done.stderr)
     assert "numpy" in loaded
     assert not {name.partition(".")[0] for name in loaded} & HEAVY
-    assert "linkwork.numerics.proof.position_proof" in loaded
+    assert "linkwork.core.numerics.position_proof" in loaded
     assert not FOR_MOTION & set(loaded)
     assert all(importlib.util.find_spec(name) for name in FOR_MOTION)
 
@@ -113,7 +112,7 @@ def test_an_interrupted_program_does_what_is_registered_for_its_end_and_deletes_
     """Deleting everything takes longer than most interrupted work once compiled code is loaded."""
     program = (
         "import atexit, sys, types\n"
-        "from linkwork.cli import interrupts\n"
+        "from linkwork.core.commands import interrupts\n"
         "class Deleted:\n"
         "    def __del__(self): print('deleted')\n"
         "kept = Deleted()\n"
@@ -122,7 +121,7 @@ def test_an_interrupted_program_does_what_is_registered_for_its_end_and_deletes_
         "    if sys.argv[1] == 'quiet': sys.exit(130)\n"
         "    try: interrupts._interrupt(2, None)\n"
         "    except KeyboardInterrupt: sys.exit(130)\n"
-        "sys.modules['linkwork.cli.main'] = types.SimpleNamespace(main=command)\n"
+        "sys.modules['linkwork.core.commands.main'] = types.SimpleNamespace(main=command)\n"
         "from linkwork.__main__ import main\n"
         "main()\n"
     )
@@ -141,7 +140,7 @@ def test_an_interrupt_of_a_deletion_is_not_lost(environment: dict[str, str]) -> 
         "def command():\n"
         "    Deleted()\n"
         "    for _ in range(60): time.sleep(0.1)\n"
-        "sys.modules['linkwork.cli.main'] = types.SimpleNamespace(main=command)\n"
+        "sys.modules['linkwork.core.commands.main'] = types.SimpleNamespace(main=command)\n"
         "from linkwork.__main__ import main\n"
         "main()\n"
     )
@@ -156,7 +155,7 @@ def test_an_interrupt_that_a_library_loses_is_one_all_the_same(
 ) -> None:
     program = (
         "import os, signal, sys, time\n"
-        "import linkwork.cli.compile as command\n"
+        "import linkwork.families.commands as command\n"
         "def compiling(tell):\n"
         "    try:\n"
         "        os.kill(os.getpid(), signal.SIGINT)\n"

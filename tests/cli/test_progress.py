@@ -8,7 +8,7 @@ import time
 
 import pytest
 
-from linkwork.cli import terminal
+from linkwork.core.commands import terminal
 
 
 class _Terminal(io.StringIO):

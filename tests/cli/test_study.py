@@ -11,9 +11,8 @@ from pathlib import Path
 
 import pytest
 
-from linkwork.batch.study import Progress
-from linkwork.cli.study import study_progress
-from linkwork.cli.study_page import progress_line
+from linkwork.families.commands import progress_line, study_progress
+from linkwork.families.study import Progress
 from tests.batch.study.plans import PLAN, edited
 from tests.cli.conftest import Run
 
@@ -163,7 +162,7 @@ class _Terminal(io.StringIO):
 
 def test_progress_is_one_line_written_over_and_taken_away(monkeypatch: pytest.MonkeyPatch) -> None:
     terminal = _Terminal()
-    monkeypatch.setattr("linkwork.cli.study._PATIENCE", 0.0)
+    monkeypatch.setattr("linkwork.families.commands._PATIENCE", 0.0)
     monkeypatch.setattr(sys, "stderr", terminal)
     with study_progress(quiet=False) as tell:
         for done in (500, 1000):
@@ -180,7 +179,7 @@ def test_there_is_no_progress_in_a_file_nor_where_it_is_not_wanted(
 ) -> None:
     half = Progress(total=2, done=1, before=0, seconds=5.0)
     file, terminal = io.StringIO(), _Terminal()
-    monkeypatch.setattr("linkwork.cli.study._PATIENCE", 0.0)
+    monkeypatch.setattr("linkwork.families.commands._PATIENCE", 0.0)
     for stream, quiet in ((file, False), (terminal, True)):
         monkeypatch.setattr(sys, "stderr", stream)
         with study_progress(quiet) as tell:
@@ -199,7 +198,7 @@ import importlib.util, sys
 real = importlib.util.find_spec
 importlib.util.find_spec = lambda name: None if name == "zarr" else real(name)
 from click.testing import CliRunner
-from linkwork.cli.main import linkwork
+from linkwork.core.commands.main import linkwork
 done = CliRunner().invoke(linkwork, sys.argv[1:])
 print(done.output, done.exit_code, "numba" in sys.modules)
 """

@@ -12,8 +12,8 @@ import pytest
 from click.testing import CliRunner
 
 import linkwork as lw
-from linkwork.cli.main import linkwork
-from linkwork.design.synthesis.advice import advice_of, remark_on, remarks_on
+from linkwork.core.commands.main import linkwork
+from linkwork.synthesis.solvers.solving import advice_of, remark_on, remarks_on
 
 _POSES = """
 [[positions]]

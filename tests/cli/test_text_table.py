@@ -6,10 +6,8 @@ import math
 
 import pytest
 
-from linkwork.cli.terminal import fields
-from linkwork.cli.text_table import table_lines
-from linkwork.results.listing.column import Column
-from linkwork.results.listing.number_text import fixed, lengths, short, significant
+from linkwork.core.commands.terminal import fields, table_lines
+from linkwork.core.results.listing.motion_listing import Column, fixed, lengths, short, significant
 
 
 def test_decimal_points_stand_below_each_other_and_units_behind() -> None:

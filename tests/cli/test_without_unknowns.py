@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 from click.testing import CliRunner
 
-from linkwork.cli.main import linkwork
+from linkwork.core.commands.main import linkwork
 
 BAR = """\
 format = 1

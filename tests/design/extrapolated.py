@@ -6,9 +6,9 @@ from collections.abc import Callable, Mapping
 
 import linkwork as lw
 from linkwork.api import Mechanism
-from linkwork.foundation.arrays import Array
-from linkwork.mechanism.varied_number import number_named, with_numbers
-from linkwork.motion.model import Model
+from linkwork.core.foundation.arrays import Array
+from linkwork.core.mechanism.varied_numbers import number_named, with_numbers
+from linkwork.core.motion.model import Model
 
 __all__ = ["changed_by", "extrapolated", "own_position"]
 

@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 
 import linkwork as lw
-from linkwork.foundation.errors import InputError
-from linkwork.mechanism.linkage import Linkage
+from linkwork.core.foundation.errors import InputError
+from linkwork.core.mechanism.linkage import Linkage
 from tests.design.extrapolated import changed_by, extrapolated
 
 MACHINE = """

@@ -8,13 +8,12 @@ import numpy as np
 import pytest
 
 import linkwork as lw
-from linkwork.design.improvement.goals import goal_of
-from linkwork.design.improvement.settings import Goal
-from linkwork.design.improvement.solved_lanes import SolvedLanes
-from linkwork.design.improvement.written_designs import DesignWriter
-from linkwork.foundation.arrays import Array
-from linkwork.foundation.errors import InputError
-from linkwork.mechanism.varied_number import number_named
+from linkwork.core.foundation.arrays import Array
+from linkwork.core.foundation.errors import InputError
+from linkwork.core.mechanism.varied_numbers import number_named
+from linkwork.synthesis.improvement.goals import goal_of
+from linkwork.synthesis.improvement.lanes import DesignWriter, SolvedLanes
+from linkwork.synthesis.improvement.settings import Goal
 
 
 def _values(

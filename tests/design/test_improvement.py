@@ -8,16 +8,14 @@ import numpy as np
 import pytest
 
 import linkwork as lw
-from linkwork.design.improvement import improving
-from linkwork.design.improvement.fit_problem import Fitting
-from linkwork.design.improvement.mechanism_fit import fit_numbers
-from linkwork.design.improvement.settings import Goal
-from linkwork.design.improvement.solved_lanes import SolvedLanes
-from linkwork.design.improvement.written_designs import DesignWriter
-from linkwork.foundation.errors import InputError, MechanismError
-from linkwork.mechanism.varied_number import number_named
-from linkwork.numerics.lane_bounds import Box
-from linkwork.results.branch_end import branch_end
+from linkwork.core.foundation.errors import InputError, MechanismError
+from linkwork.core.mechanism.varied_numbers import number_named
+from linkwork.core.results.motion import branch_end
+from linkwork.synthesis.improvement import improving
+from linkwork.synthesis.improvement.fit_problem import Fitting, fit_numbers
+from linkwork.synthesis.improvement.lanes import DesignWriter, SolvedLanes
+from linkwork.synthesis.improvement.settings import Goal
+from linkwork.synthesis.lane_least_squares import Box
 
 
 def test_gradients_of_lanes_are_those_of_the_single_mechanism() -> None:

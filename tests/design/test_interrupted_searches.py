@@ -9,17 +9,17 @@ import numpy as np
 import pytest
 
 import linkwork as lw
-from linkwork.design.improvement import (
+from linkwork.synthesis.improvement import (
     curve_starts,
     fit_problem,
-    front_designs,
-    front_fit,
+    fit_problem as mechanism_fit,
+    fronts as front_designs,
+    fronts as front_fit,
     improving,
-    lane_work,
-    mechanism_fit,
+    lanes as lane_work,
     proved_design,
 )
-from linkwork.design.synthesis import solving
+from linkwork.synthesis.solvers import solving
 from tests.design.test_pareto_front import CRANK
 
 _GOALS = [{"of": "stroke(d)", "target": 70}]

@@ -7,7 +7,7 @@ import math
 import pytest
 
 import linkwork as lw
-from linkwork.design.improvement.proved_design import proved_design
+from linkwork.synthesis.improvement.proved_design import proved_design
 
 _GEARED = """format = 1
 length = "mm"

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 import linkwork as lw
-from linkwork.foundation.errors import InputError, UnknownNameError
+from linkwork.core.foundation.errors import InputError, UnknownNameError
 from tests.forces.random_loads import loaded
 
 

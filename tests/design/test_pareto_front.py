@@ -9,10 +9,10 @@ import numpy as np
 import pytest
 
 import linkwork as lw
-from linkwork.design.improvement import front_designs
-from linkwork.design.improvement.pareto_front import spread, undominated
-from linkwork.foundation.arrays import Array
-from linkwork.foundation.errors import MechanismError
+from linkwork.core.foundation.arrays import Array
+from linkwork.core.foundation.errors import MechanismError
+from linkwork.synthesis.improvement import fronts as front_designs
+from linkwork.synthesis.improvement.fronts import spread, undominated
 
 #: The slider-crank of the library with rows 30° apart; its slider runs 20 below the crank.
 CRANK = lw.example_text("slider-crank").replace("step = 1\n", "step = 30\n")

@@ -8,17 +8,15 @@ import numpy as np
 import pytest
 
 import linkwork as lw
-from linkwork.batch.building import write_equations
-from linkwork.design.derivatives.recorded_tape import RecordedTape
-from linkwork.design.derivatives.tape import Tape, TapedNumber
-from linkwork.design.improvement.improving import numbers_to_vary
-from linkwork.design.improvement.written_designs import DesignWriter
-from linkwork.equations.model import LoopEquations
-from linkwork.foundation.arrays import Array, BoolArray
-from linkwork.foundation.elementwise import choose, finite, leader_value, snap
-from linkwork.foundation.operand import NotElementwise
-from linkwork.mechanism.varied_number import VariedNumber, with_numbers
-from linkwork.motion.model import Model
+from linkwork.core.equations.model import LoopEquations
+from linkwork.core.foundation.arrays import Array, BoolArray
+from linkwork.core.foundation.lanes import NotElementwise, choose, finite, leader_value, snap
+from linkwork.core.mechanism.varied_numbers import VariedNumber, with_numbers
+from linkwork.core.motion.model import Model
+from linkwork.design.derivatives.tape import RecordedTape, Tape, TapedNumber
+from linkwork.families.building import write_equations
+from linkwork.synthesis.improvement.improving import numbers_to_vary
+from linkwork.synthesis.improvement.lanes import DesignWriter
 
 
 def _taped_in(equations: LoopEquations) -> list[TapedNumber]:

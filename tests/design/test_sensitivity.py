@@ -12,10 +12,10 @@ import numpy as np
 import pytest
 
 import linkwork as lw
-from linkwork.design.derivatives.differentiable_numbers import chosen_numbers
-from linkwork.design.derivatives.differentiated_forces import LoadedRows
+from linkwork.core.foundation.errors import InputError, UnknownNameError
+from linkwork.design.derivatives.forces import LoadedRows
+from linkwork.design.derivatives.rows import chosen_numbers
 from linkwork.design.derivatives.tape import Tape, TapedNumber
-from linkwork.foundation.errors import InputError, UnknownNameError
 from tests.campaigns.gradients import gradient_campaign
 from tests.design.extrapolated import changed_by, extrapolated
 from tests.library_mechanisms import driven_examples, read_example

@@ -8,11 +8,11 @@ import numpy as np
 import pytest
 
 import linkwork as lw
-from linkwork.design.defects.verdicts import DefectKind
-from linkwork.design.suggestion import suggesting
-from linkwork.design.suggestion.suggested_design import Origin
-from linkwork.design.tasks.task import Task
-from linkwork.foundation.errors import InputError
+from linkwork.core.foundation.errors import InputError
+from linkwork.synthesis.defects.verdicts import DefectKind
+from linkwork.synthesis.suggestion import suggesting
+from linkwork.synthesis.suggestion.suggesting import Origin
+from linkwork.synthesis.tasks.task import Task
 
 
 def path_task(angle: str = "deg", wanted: str = "", count: int = 24) -> Task:

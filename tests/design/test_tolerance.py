@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 import linkwork as lw
-from linkwork.foundation.errors import InputError, MechanismFileError, UnknownNameError
+from linkwork.core.foundation.errors import InputError, MechanismFileError, UnknownNameError
 from tests.design.test_force_sensitivity import MACHINE
 from tests.library_mechanisms import read_example
 

@@ -8,13 +8,13 @@ import numpy as np
 import pytest
 
 import linkwork as lw
-from linkwork.design.improvement import whole_motion
-from linkwork.design.improvement.between_rows import BetweenRows
-from linkwork.design.improvement.whole_motion import WholeMotion
-from linkwork.foundation.names import GROUND
-from linkwork.mechanism.draft import Draft
-from linkwork.motion.model import model_of
-from linkwork.motion.motion_boxes import motions_of_points
+from linkwork.core.foundation.names import GROUND
+from linkwork.core.mechanism.linkage import Draft
+from linkwork.core.motion.extremes import motions_of_points
+from linkwork.core.motion.model import model_of
+from linkwork.synthesis.improvement import whole_motion
+from linkwork.synthesis.improvement.goals import BetweenRows
+from linkwork.synthesis.improvement.whole_motion import WholeMotion
 from tests.campaigns import whole_motions as campaign
 from tests.library_mechanisms import driven_examples, read_example
 

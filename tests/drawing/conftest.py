@@ -10,18 +10,17 @@ from dataclasses import dataclass, field
 import numpy as np
 import pytest
 
-from linkwork.foundation.angles import AngleUnit
-from linkwork.foundation.certification import Certification
-from linkwork.foundation.status import Status
-from linkwork.mechanism.figures import Guide
-from linkwork.mechanism.part.cylinder import Strut
-from linkwork.mechanism.skeleton import Bar, DrivenPart, Skeleton
-from linkwork.results.motion import Motion
-from linkwork.results.position import Position
-from linkwork.results.quantities.definition import MechanismNames
-from linkwork.results.quantities.registry import Quantities
-from linkwork.results.quantity import Kind, Quantity, Units
-from linkwork.results.series import Series
+from linkwork.core.foundation.statuses import Certification, Status
+from linkwork.core.foundation.units import AngleUnit
+from linkwork.core.mechanism.bodies import Guide
+from linkwork.core.mechanism.part.guides import Strut
+from linkwork.core.mechanism.skeleton import Bar, DrivenPart, Skeleton
+from linkwork.core.results.motion import Motion
+from linkwork.core.results.position import Position
+from linkwork.core.results.quantities.definition import MechanismNames
+from linkwork.core.results.quantities.registry import Quantities
+from linkwork.core.results.quantity import Kind, Quantity, Units
+from linkwork.core.results.series import Series
 
 Places = dict[str, complex]
 

@@ -14,7 +14,7 @@ from typing import Any
 from xml.sax.saxutils import escape, quoteattr
 
 import linkwork as lw
-from linkwork.drawing import SceneOptions, render
+from linkwork.core.drawing import SceneOptions, render
 
 __all__ = ["FOLDER", "GOLDEN", "Shape", "drawn", "read", "written"]
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from linkwork.drawing.box import Box
+from linkwork.core.drawing.scene import Box
 
 __all__ = ["shared_area"]
 

@@ -12,7 +12,7 @@ import numpy as np
 import pytest
 
 import linkwork as lw
-from linkwork.drawing import (
+from linkwork.core.drawing import (
     Arc,
     Disc,
     Hatch,
@@ -24,11 +24,9 @@ from linkwork.drawing import (
     Text,
     scene_of,
 )
-from linkwork.drawing.annotation import round_up
-from linkwork.drawing.point_arrows import LONGEST
-from linkwork.drawing.rate_arrows import usual_most
-from linkwork.foundation.errors import InputError
-from linkwork.results.force import Force
+from linkwork.core.drawing.annotations import LONGEST, round_up, usual_most
+from linkwork.core.foundation.errors import InputError
+from linkwork.forces.results import Force
 from tests.drawing.shared_area import shared_area
 
 NAMES = ["four-bar", "jansen-leg", "slider-crank", "crank-shaper", "planetary-gear"]

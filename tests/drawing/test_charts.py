@@ -13,14 +13,13 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
 import linkwork as lw
-from linkwork.drawing import LIGHT, circuit_chart, render
-from linkwork.drawing.charts import chart as chart_module, circuit_chart as circuit_chart_module
-from linkwork.drawing.charts.branch_chart import branch_chart
-from linkwork.drawing.charts.chart import Chart, Curve
-from linkwork.drawing.charts.matplotlib_page import chart_figure
-from linkwork.drawing.charts.motion_chart import motion_chart
-from linkwork.drawing.charts.theme import LIGHT_CHART
-from linkwork.foundation.errors import InputError, UnknownNameError
+from linkwork.core.drawing import LIGHT, circuit_chart, render
+from linkwork.core.foundation.errors import InputError, UnknownNameError
+from linkwork.writers.charts import chart as chart_module, circuits as circuit_chart_module
+from linkwork.writers.charts.chart import LIGHT_CHART, Chart, Curve
+from linkwork.writers.charts.circuits import branch_chart
+from linkwork.writers.charts.kinds import motion_chart
+from linkwork.writers.charts.matplotlib_plot import chart_figure
 from tests.drawing.pages import assert_page_is_clear, printed_texts, size_in_inches, svg_texts
 from tests.thinned import thinned
 

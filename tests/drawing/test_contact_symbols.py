@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 import linkwork as lw
-from linkwork.drawing import (
+from linkwork.core.drawing import (
     Arc,
     Disc,
     Hatch,
@@ -22,12 +22,12 @@ from linkwork.drawing import (
     reach_of,
     scene_of,
 )
-from linkwork.drawing.pose import Pose
-from linkwork.drawing.tooth_outline import tooth_outline, tooth_phases
-from linkwork.foundation.arrays import ComplexArray
-from linkwork.mechanism.figures import Contour, Disc as Wheel
-from linkwork.mechanism.part.belt import BeltRun
-from linkwork.mechanism.part.weld import RigidJoint
+from linkwork.core.drawing.pose import Pose
+from linkwork.core.drawing.wheels import tooth_outline, tooth_phases
+from linkwork.core.foundation.arrays import ComplexArray
+from linkwork.core.mechanism.bodies import Contour, DiscFigure as Wheel
+from linkwork.core.mechanism.part.gears import BeltRun
+from linkwork.core.mechanism.part.weld import RigidJoint
 
 EXAMPLES = [
     "planetary-gear", "planetary-differential", "cardan-circles", "geared-five-bar",

@@ -10,7 +10,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from linkwork.drawing import (
+from linkwork.core.drawing import (
     Arc,
     Disc,
     Hatch,
@@ -21,11 +21,11 @@ from linkwork.drawing import (
     reach_of,
     scene_of,
 )
-from linkwork.drawing.link_symbols import convex_outline, uncovered
-from linkwork.drawing.trace_path import drawn_once, thinned
-from linkwork.foundation.status import Status
-from linkwork.mechanism.part.spring import SpringFigure
-from linkwork.results.position import Position
+from linkwork.core.drawing.links import convex_outline, uncovered
+from linkwork.core.drawing.paths import drawn_once, thinned
+from linkwork.core.foundation.statuses import Status
+from linkwork.core.mechanism.part.springs import SpringFigure
+from linkwork.core.results.position import Position
 from tests.drawing.conftest import Places, Sample
 
 MECHANISMS = [

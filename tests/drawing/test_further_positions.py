@@ -13,7 +13,7 @@ import pytest
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 
 import linkwork as lw
-from linkwork.drawing import (
+from linkwork.core.drawing import (
     LIGHT,
     Disc,
     Polygon,
@@ -26,14 +26,13 @@ from linkwork.drawing import (
     render,
     scene_of,
 )
-from linkwork.drawing.captions import lines_within, reached_caption
-from linkwork.drawing.further_positions import driven_point, further_positions
-from linkwork.drawing.pose import Pose
-from linkwork.drawing.scene import Primitive, text_width
-from linkwork.foundation.status import Status
-from linkwork.mechanism.skeleton import DrivenPart
-from linkwork.results.motion import Motion
-from linkwork.results.position import Position
+from linkwork.core.drawing.paths import driven_point, further_positions
+from linkwork.core.drawing.pose import Pose, lines_within, reached_caption
+from linkwork.core.drawing.scene import Primitive, text_width
+from linkwork.core.foundation.statuses import Status
+from linkwork.core.mechanism.skeleton import DrivenPart
+from linkwork.core.results.motion import Motion
+from linkwork.core.results.position import Position
 from tests.drawing.conftest import Sample
 from tests.drawing.mechanisms import five_bar_of
 from tests.drawing.pages import svg_texts

@@ -9,11 +9,11 @@ import numpy as np
 import pytest
 
 import linkwork as lw
-from linkwork.cli.picture import sweep_scene
-from linkwork.drawing import Disc, Role, Scene, SceneOptions, Text, scene_of
-from linkwork.drawing.moving_scene import moving_scene
-from linkwork.drawing.obstacles import Obstacles
-from linkwork.motion import vector_loops
+from linkwork.core.commands.sweep import sweep_scene
+from linkwork.core.drawing import Disc, Role, Scene, SceneOptions, Text, scene_of
+from linkwork.core.drawing.labels import Obstacles
+from linkwork.core.drawing.moving_scene import moving_scene
+from linkwork.core.motion import vector_loops
 from tests.drawing.shared_area import shared_area
 from tests.thinned import thinned
 

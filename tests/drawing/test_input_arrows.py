@@ -11,8 +11,8 @@ from typing import Any
 import pytest
 
 import linkwork as lw
-from linkwork.drawing import Arc, Disc, Hatch, Polygon, Polyline, Role, Scene, scene_of
-from linkwork.drawing.scene import Primitive
+from linkwork.core.drawing import Arc, Disc, Hatch, Polygon, Polyline, Role, Scene, scene_of
+from linkwork.core.drawing.scene import Primitive
 from tests.drawing.conftest import Sample
 
 

@@ -6,8 +6,8 @@ from itertools import combinations
 
 import pytest
 
-from linkwork.drawing import Box, Disc, Polyline, Role, SceneOptions, Text, scene_of
-from linkwork.drawing.captions import printed_name
+from linkwork.core.drawing import Box, Disc, Polyline, Role, SceneOptions, Text, scene_of
+from linkwork.core.drawing.pose import printed_name
 from tests.drawing.conftest import Places, Sample
 from tests.drawing.shared_area import shared_area
 

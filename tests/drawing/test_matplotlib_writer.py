@@ -13,9 +13,9 @@ import numpy as np
 import pytest
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 
-from linkwork.drawing import Disc, Polyline, Role, Scene, Text, figure, render, scene_of, write
-from linkwork.foundation.arrays import Array
-from linkwork.foundation.errors import InputError, MissingPackageError
+from linkwork.core.drawing import Disc, Polyline, Role, Scene, Text, figure, render, scene_of, write
+from linkwork.core.foundation.arrays import Array
+from linkwork.core.foundation.errors import InputError, MissingPackageError
 from tests.drawing.conftest import Sample
 
 MECHANISMS = [

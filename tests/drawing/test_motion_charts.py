@@ -11,13 +11,12 @@ import numpy as np
 import pytest
 
 import linkwork as lw
-from linkwork.drawing.charts.chart import Chart, Curve, Pen, Scale
-from linkwork.drawing.charts.motion_chart import motion_chart
-from linkwork.drawing.charts.plotting import motion_plot
-from linkwork.drawing.charts.scales import across_step, angle_ends
-from linkwork.foundation.angles import AngleUnit
-from linkwork.foundation.arrays import Array
-from linkwork.foundation.errors import InputError, UnknownNameError
+from linkwork.core.foundation.arrays import Array
+from linkwork.core.foundation.errors import InputError, UnknownNameError
+from linkwork.core.foundation.units import AngleUnit
+from linkwork.writers.charts.chart import Chart, Curve, Pen, Scale, across_step, angle_ends
+from linkwork.writers.charts.kinds import motion_chart
+from linkwork.writers.charts.plotting import motion_plot
 
 ABOUT: Any = pytest.approx  # where it is a part of a tuple
 POINTS = {"O2": (0, 0), "A": (40, 0.01), "B": (120, 60), "O4": (100, 0)}

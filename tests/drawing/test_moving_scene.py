@@ -8,11 +8,10 @@ import numpy as np
 import pytest
 
 import linkwork as lw
-from linkwork.drawing import SceneOptions, reach_of, scene_of
-from linkwork.drawing.moving_scene import moving_scene
-from linkwork.drawing.scene import Arc, Disc, Polyline, Primitive, Role, Scene, Text
-from linkwork.drawing.shape_corners import corners
-from linkwork.mechanism.linkage import Linkage
+from linkwork.core.drawing import SceneOptions, reach_of, scene_of
+from linkwork.core.drawing.moving_scene import moving_scene
+from linkwork.core.drawing.scene import Arc, Disc, Polyline, Primitive, Role, Scene, Text, corners
+from linkwork.core.mechanism.linkage import Linkage
 from tests.described import described_as
 from tests.drawing.shared_area import shared_area
 from tests.library_mechanisms import read_example

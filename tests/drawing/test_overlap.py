@@ -6,9 +6,9 @@ import tracemalloc
 
 import numpy as np
 
-from linkwork.drawing.charts.chart import Curve
-from linkwork.drawing.charts.overlap import layered
-from linkwork.foundation.arrays import Array
+from linkwork.core.foundation.arrays import Array
+from linkwork.writers.charts.chart import Curve
+from linkwork.writers.charts.columns import layered
 
 
 def _below(*heights: Array) -> list[int]:

@@ -9,12 +9,11 @@ import numpy as np
 import pytest
 
 import linkwork as lw
-from linkwork.drawing.charts.branch_chart import branch_chart
-from linkwork.drawing.charts.chart import Chart, Mark, Shape
-from linkwork.drawing.charts.circuit_chart import circuit_chart
-from linkwork.drawing.charts.plotting import motion_plot
-from linkwork.foundation.errors import InputError, UnknownNameError
-from linkwork.mechanism.dyad import dyads_of
+from linkwork.core.foundation.errors import InputError, UnknownNameError
+from linkwork.core.mechanism.skeleton import dyads_of
+from linkwork.writers.charts.chart import Chart, Mark, Shape
+from linkwork.writers.charts.circuits import branch_chart, circuit_chart
+from linkwork.writers.charts.plotting import motion_plot
 
 
 @cache

@@ -17,12 +17,12 @@ import pytest
 from matplotlib.axes import Axes
 
 import linkwork as lw
-from linkwork.drawing import LIGHT, render, scene_of, write
-from linkwork.drawing.charts.matplotlib_page import chart_figure
-from linkwork.drawing.charts.plotting import circuits_plot, motion_plot
-from linkwork.drawing.charts.theme import DARK_CHART, LIGHT_CHART, THEMES, ChartTheme
-from linkwork.foundation.errors import InputError, UnknownNameError
-from linkwork.foundation.presenting import presenter
+from linkwork.core.drawing import LIGHT, render, scene_of, write
+from linkwork.core.foundation.containers import presenter
+from linkwork.core.foundation.errors import InputError, UnknownNameError
+from linkwork.writers.charts.chart import DARK_CHART, LIGHT_CHART, THEMES, ChartTheme
+from linkwork.writers.charts.matplotlib_plot import chart_figure
+from linkwork.writers.charts.plotting import circuits_plot, motion_plot
 from tests.drawing.pages import assert_page_is_clear, left_title, svg_texts
 from tests.thinned import thinned
 

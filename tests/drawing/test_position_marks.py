@@ -8,8 +8,8 @@ import math
 import pytest
 
 import linkwork as lw
-from linkwork.drawing.position_marks import PositionMark
-from linkwork.drawing.scene import Disc, Polyline, Role, Text
+from linkwork.core.drawing.annotations import PositionMark
+from linkwork.core.drawing.scene import Disc, Polyline, Role, Text
 
 
 def test_poses_are_rings_with_numbers_and_lines_along_the_body() -> None:

@@ -10,10 +10,10 @@ from typing import Any
 import numpy as np
 import pytest
 
-from linkwork.drawing import Polyline, Role, SceneOptions, reach_of, scene_of
-from linkwork.foundation.errors import InputError, UnknownNameError
-from linkwork.foundation.status import Status
-from linkwork.mechanism.skeleton import Bar, Skeleton
+from linkwork.core.drawing import Polyline, Role, SceneOptions, reach_of, scene_of
+from linkwork.core.foundation.errors import InputError, UnknownNameError
+from linkwork.core.foundation.statuses import Status
+from linkwork.core.mechanism.skeleton import Bar, Skeleton
 from tests.drawing.conftest import Sample
 
 
@@ -137,5 +137,5 @@ def test_one_single_point_can_be_drawn(four_bar: Sample) -> None:
 
 
 def test_scenes_need_no_matplotlib() -> None:
-    code = "import linkwork.drawing, sys; sys.exit('matplotlib' in sys.modules)"
+    code = "import linkwork.core.drawing, sys; sys.exit('matplotlib' in sys.modules)"
     assert subprocess.run([sys.executable, "-c", code], check=False).returncode == 0

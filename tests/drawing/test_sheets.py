@@ -9,9 +9,9 @@ import pytest
 from matplotlib.figure import Figure
 
 import linkwork as lw
-from linkwork.drawing import LIGHT, Scene, Sheet, Text, configuration_sheet, render
-from linkwork.drawing.matplotlib_writer import _sheet_figure
-from linkwork.foundation.errors import InputError
+from linkwork.core.drawing import LIGHT, Scene, Sheet, Text, configuration_sheet, render
+from linkwork.core.drawing.matplotlib_writer import _sheet_figure
+from linkwork.core.foundation.errors import InputError
 from tests.drawing.conftest import Sample
 from tests.drawing.mechanisms import five_bar_of
 from tests.drawing.pages import assert_page_is_clear, printed_texts, size_in_inches, svg_texts

@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 
 import linkwork as lw
-from linkwork.drawing.smooth_path import UNSEEN, smoothed
-from linkwork.foundation.arrays import Array, ComplexArray
-from linkwork.results.motion import Motion
+from linkwork.core.drawing.paths import UNSEEN, smoothed
+from linkwork.core.foundation.arrays import Array, ComplexArray
+from linkwork.core.results.motion import Motion
 
 _SIZE = 800.0  # pixels
 _SEEN = 0.3  # pixels

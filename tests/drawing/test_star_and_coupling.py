@@ -10,10 +10,10 @@ import numpy as np
 import pytest
 
 import linkwork as lw
-from linkwork.drawing import Disc, Polygon, Polyline, Role, Scene
-from linkwork.drawing.coupling_symbols import couplings
-from linkwork.foundation.arrays import ComplexArray
-from linkwork.foundation.errors import MechanismError
+from linkwork.core.drawing import Disc, Polygon, Polyline, Role, Scene
+from linkwork.core.drawing.links import couplings
+from linkwork.core.foundation.arrays import ComplexArray
+from linkwork.core.foundation.errors import MechanismError
 from tests.library_mechanisms import read_example
 
 

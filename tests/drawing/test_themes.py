@@ -17,9 +17,9 @@ from itertools import combinations, pairwise
 import numpy as np
 import pytest
 
-from linkwork.drawing import DARK, LIGHT, THEMES, Polyline, Role, theme_named
-from linkwork.foundation.arrays import Array
-from linkwork.foundation.errors import UnknownNameError
+from linkwork.core.drawing import DARK, LIGHT, THEMES, Polyline, Role, theme_named
+from linkwork.core.foundation.arrays import Array
+from linkwork.core.foundation.errors import UnknownNameError
 
 SIGHT = {
     "usual": np.eye(3),

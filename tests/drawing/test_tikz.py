@@ -9,11 +9,12 @@ import numpy as np
 import pytest
 
 import linkwork as lw
-from linkwork.drawing.charts.plotting import motion_plot
-from linkwork.drawing.picture_file import write
-from linkwork.drawing.scene import Disc, Text
-from linkwork.drawing.tikz_writer import picture_scale, tikz_picture
-from linkwork.foundation.latex_text import as_latex
+from linkwork.core.drawing.mechanism_scene import configuration_sheet
+from linkwork.core.drawing.picture_file import write
+from linkwork.core.drawing.scene import Disc, Text
+from linkwork.core.drawing.tikz import picture_scale, tikz_picture
+from linkwork.core.foundation.names import as_latex
+from linkwork.writers.charts.plotting import motion_plot
 from tests.library_mechanisms import read_example
 
 _ROUNDED = 0.00051  # mm: coordinates have three digits after the point
@@ -85,6 +86,6 @@ def test_every_kind_of_chart_is_written(tmp_path: Path) -> None:
 
 
 def test_a_sheet_of_several_positions_is_refused(tmp_path: Path) -> None:
-    sheet = lw.drawing.configuration_sheet(read_example("four-bar").configurations(at=60))
+    sheet = configuration_sheet(read_example("four-bar").configurations(at=60))
     with pytest.raises(lw.InputError, match="a TikZ picture shows one position or a chart"):
         write(sheet, tmp_path / "all.tikz")

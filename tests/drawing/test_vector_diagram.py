@@ -7,12 +7,12 @@ from itertools import combinations
 import pytest
 
 import linkwork as lw
-from linkwork.drawing import Polyline, Role, Scene, SceneOptions, Text, scene_of
-from linkwork.drawing.pose import Pose
-from linkwork.drawing.vector_polygon import polygon
-from linkwork.foundation.errors import InputError
-from linkwork.motion import vector_loops
-from linkwork.results.vector_loop import LoopVector, VectorLoop
+from linkwork.core.drawing import Polyline, Role, Scene, SceneOptions, Text, scene_of
+from linkwork.core.drawing.pose import Pose
+from linkwork.core.drawing.vectors import polygon
+from linkwork.core.foundation.errors import InputError
+from linkwork.core.motion import vector_loops
+from linkwork.core.results.vector_loop import LoopVector, VectorLoop
 from tests.drawing.conftest import Sample
 from tests.drawing.shared_area import shared_area
 

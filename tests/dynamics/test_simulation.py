@@ -10,7 +10,7 @@ import pytest
 
 import linkwork as lw
 from benchmarks.motions.machines import SQUEEZER_ANGLE, WINDOW_PLACES, squeezer, windows
-from linkwork.dynamics.simulation import simulate
+from linkwork.forces.dynamics.simulation import simulate
 
 PENDULUM: dict[str, Any] = {
     "length": "m",

@@ -10,8 +10,8 @@ import numpy as np
 import pytest
 
 import linkwork as lw
-from linkwork.dynamics import panels, reduced_leg
-from linkwork.forces import forces_of_motion
+from linkwork.forces.dynamics import collocation as panels, reduced_leg
+from linkwork.forces.reactions import forces_of_motion
 
 BLOCK: dict[str, Any] = {
     "length": "m",

@@ -10,14 +10,14 @@ import pytest
 from flint import acb, arb, ctx
 
 import linkwork as lw
-from linkwork.batch import designs_of
-from linkwork.equations.outline import Outline
-from linkwork.expression.grammar import parse
-from linkwork.expression.precise_values import precise_value
-from linkwork.foundation.angles import AngleUnit
-from linkwork.foundation.precise import Precise
-from linkwork.foundation.rounding import UNIT_ROUNDOFF
-from linkwork.mechanism.linkage import Linkage
+from linkwork.contacts.profiles import Outline
+from linkwork.core.expression.grammar import parse
+from linkwork.core.expression.values import precise_value
+from linkwork.core.foundation.precise import Precise
+from linkwork.core.foundation.rounding import UNIT_ROUNDOFF
+from linkwork.core.foundation.units import AngleUnit
+from linkwork.core.mechanism.linkage import Linkage
+from linkwork.families import designs_of
 from tests.campaigns.radii import judge_radii
 
 #: Random mechanisms of the campaign in which every kind of part and of shape occurs.

@@ -12,8 +12,8 @@ import pytest
 from scipy.interpolate import CubicSpline
 
 import linkwork as lw
-from linkwork.equations.outline import Outline
-from linkwork.mechanism.linkage import Linkage
+from linkwork.contacts.profiles import Outline
+from linkwork.core.mechanism.linkage import Linkage
 from tests.laws.contacts import KINDS, contact, outline_points, xy
 from tests.oracles.contact_geometry import Seen, gap_of_face, gap_of_point
 

@@ -10,7 +10,7 @@ from pathlib import Path
 import pytest
 
 import linkwork as lw
-from linkwork.equations.derivation import derivation
+from linkwork.core.equations.writing import derivation
 
 
 def _derived(name: str) -> str:

@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 
 import linkwork as lw
-from linkwork.equations.directions import NoDirectionForm, direction_form
-from linkwork.kernels.loop_table import LoopTable
+from linkwork.core.equations.compiling import NoDirectionForm, direction_form
+from linkwork.core.table.loop_table import LoopTable
 from tests.laws.mechanisms import NAMES, mechanism_of
 
 

@@ -9,7 +9,7 @@ import numpy.typing as npt
 import pytest
 
 import linkwork as lw
-from linkwork.mechanism.linkage import Linkage
+from linkwork.core.mechanism.linkage import Linkage
 from tests.described import described_as
 from tests.equations.linkages import LINKAGES, five_bar
 

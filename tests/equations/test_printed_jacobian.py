@@ -8,9 +8,9 @@ import numpy as np
 import pytest
 
 import linkwork as lw
-from linkwork.equations.model import LoopEquations
-from linkwork.expression.grammar import parse
-from linkwork.expression.values import value
+from linkwork.core.equations.model import LoopEquations
+from linkwork.core.expression.grammar import parse
+from linkwork.core.expression.values import value
 from tests.laws.contacts import KINDS, contact
 
 CASES = {

@@ -11,7 +11,7 @@ import pytest
 from click.testing import CliRunner
 
 import linkwork as lw
-from linkwork.cli.main import linkwork
+from linkwork.core.commands.main import linkwork
 from tests.campaigns.roots import root_campaign
 from tests.thinned import thinned
 

@@ -9,14 +9,14 @@ from pathlib import Path
 import numpy as np
 
 import linkwork as lw
-from linkwork.exchange import read_foreign, write_foreign
-from linkwork.export import robot_of
-from linkwork.foundation.errors import InputError
-from linkwork.foundation.names import GROUND
-from linkwork.foundation.units import LENGTHS
-from linkwork.mechanism.driven_input import Input
-from linkwork.mechanism.linkage import Linkage
-from linkwork.results.motion import Motion
+from linkwork.core.foundation.errors import InputError
+from linkwork.core.foundation.names import GROUND
+from linkwork.core.foundation.units import LENGTHS
+from linkwork.core.mechanism.inputs import Input
+from linkwork.core.mechanism.linkage import Linkage
+from linkwork.core.results.motion import Motion
+from linkwork.readers import read_foreign, write_foreign
+from linkwork.writers import robot_of
 
 __all__ = ["RoundTrip", "robot_round_trip", "round_trip"]
 

@@ -8,10 +8,10 @@ import numpy as np
 import pytest
 
 import linkwork as lw
-from linkwork.exchange import read_foreign
-from linkwork.exchange.source import LeftOut
-from linkwork.foundation.errors import MechanismFileError
-from linkwork.mechanism.linkage import Linkage
+from linkwork.core.foundation.errors import MechanismFileError
+from linkwork.core.mechanism.linkage import Linkage
+from linkwork.readers import read_foreign
+from linkwork.readers.assembly import LeftOut
 
 _CRANK = """
 <body name="crank"><joint name="O" axis="0 0 1"/>

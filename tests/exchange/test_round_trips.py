@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 
 import linkwork as lw
-from linkwork.exchange import WRITERS, read_foreign
-from linkwork.mechanism.linkage import Linkage
+from linkwork.core.mechanism.linkage import Linkage
+from linkwork.readers import WRITERS, read_foreign
 from tests.exchange.round_trips import RoundTrip, robot_round_trip, round_trip
 
 #: Roundings of the sweep, larger close to a change point.

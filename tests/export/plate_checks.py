@@ -11,14 +11,12 @@ from typing import Any
 import numpy as np
 
 import linkwork as lw
-from linkwork.export.plates.options import PlateOptions
-from linkwork.export.plates.placing import PlacedPlate, assembled, in_rows
-from linkwork.export.plates.plate import Plate, PlateStack
-from linkwork.export.plates.solids import Mesh, mesh_of
-from linkwork.export.plates.stack import stack_of
-from linkwork.forces.geometry import Geometry
-from linkwork.foundation.arrays import ComplexArray, IndexArray
-from linkwork.results.motion import Motion
+from linkwork.core.foundation.arrays import ComplexArray, IndexArray
+from linkwork.core.results.motion import Motion
+from linkwork.forces.reactions.geometry import Geometry
+from linkwork.writers.plates.files import Mesh, PlacedPlate, assembled, in_rows, mesh_of
+from linkwork.writers.plates.plate import Plate, PlateOptions, PlateStack
+from linkwork.writers.plates.stack import stack_of
 
 __all__ = ["hole_error", "made", "overlaps", "simple", "solid_error"]
 

@@ -11,9 +11,9 @@ from pathlib import Path
 
 import numpy as np
 
-from linkwork.foundation.arrays import Array
-from linkwork.results.motion import Motion
-from linkwork.results.quantity import Kind
+from linkwork.core.foundation.arrays import Array
+from linkwork.core.results.motion import Motion
+from linkwork.core.results.quantity import Kind
 
 __all__ = ["RUNNERS", "columns_of", "largest_differences"]
 

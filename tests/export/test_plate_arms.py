@@ -10,8 +10,8 @@ import numpy as np
 import pytest
 
 import linkwork as lw
-from linkwork.export.plates.arms import Arms, arms_between
-from linkwork.export.plates.placing import assembled
+from linkwork.writers.plates.files import assembled
+from linkwork.writers.plates.outlines import Arms, arms_between
 from tests.export.plate_checks import made, overlaps, simple, solid_error
 from tests.library_mechanisms import read_example
 

@@ -15,18 +15,15 @@ import numpy as np
 import pytest
 
 import linkwork as lw
-from linkwork.export.plates.body_poses import BodyPoses
-from linkwork.export.plates.construction import Construction
-from linkwork.export.plates.dxf import dxf_of
-from linkwork.export.plates.gears import Wheel, involute_outline, touches
-from linkwork.export.plates.layer_order import Conflict, find_layers, obstacles
-from linkwork.export.plates.outline import Outline, circle, rounded
-from linkwork.export.plates.placing import assembled, box, in_rows
-from linkwork.export.plates.plate_file import plates_of
-from linkwork.export.plates.stack import stack_of
-from linkwork.foundation.errors import InputError
-from linkwork.mechanism.figures import Disc
-from linkwork.motion.motion_boxes import boxes_of, variables_of
+from linkwork.core.foundation.errors import InputError
+from linkwork.core.mechanism.bodies import DiscFigure
+from linkwork.core.motion.extremes import boxes_of, variables_of
+from linkwork.writers.plates.bodies import BodyPoses
+from linkwork.writers.plates.construction import Construction
+from linkwork.writers.plates.files import assembled, box, dxf_of, in_rows, plates_of
+from linkwork.writers.plates.gears import Wheel, involute_outline, touches
+from linkwork.writers.plates.outlines import Outline, circle, rounded
+from linkwork.writers.plates.stack import Conflict, find_layers, obstacles, stack_of
 from tests.export.coarse import coarse
 from tests.export.plate_checks import hole_error, made, overlaps, simple, solid_error
 from tests.library_mechanisms import read_example
@@ -193,7 +190,7 @@ def test_columns_that_are_hit_between_the_rows_move_outwards() -> None:
 def test_a_search_with_bridges_is_given_up_after_a_number_of_assignments(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
-    monkeypatch.setattr("linkwork.export.plates.stack._MOST_WITH_BRIDGES", 1)
+    monkeypatch.setattr("linkwork.writers.plates.stack._MOST_WITH_BRIDGES", 1)
     with pytest.raises(InputError, match=r"no order of layers was found .* search was given up"):
         made.__wrapped__(read_example("drag-link"))
 
@@ -335,7 +332,7 @@ def test_gears_mesh_without_touching_in_all_positions(name: str) -> None:
 
 
 def _wheel(teeth: int, *, ring: bool = False, backlash: float = 0.1) -> Wheel:
-    disc = Disc(
+    disc = DiscFigure(
         name="m", link="w", center="c", radius=float(teeth), kind="gear", ring=ring, teeth=teeth
     )
     pressure = np.radians(20.0)

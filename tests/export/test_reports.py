@@ -18,9 +18,10 @@ from click.testing import CliRunner
 
 import linkwork as lw
 from linkwork.api import example_text
-from linkwork.cli.main import linkwork
-from linkwork.export import Findings, template_of
-from linkwork.export.report.document import (
+from linkwork.core.commands.main import linkwork
+from linkwork.core.results.listing.motion_listing import Column
+from linkwork.writers import Findings, template_of
+from linkwork.writers.report.document import (
     Block,
     Document,
     Equation,
@@ -33,12 +34,11 @@ from linkwork.export.report.document import (
     printed,
     split_columns,
 )
-from linkwork.export.report.docx_writer import docx_bytes
-from linkwork.export.report.html_writer import html_bytes
-from linkwork.export.report.pdf_writer import pdf_bytes, typst_text
-from linkwork.export.report.report import WrittenReport, document_of, report_of
-from linkwork.export.report.template import SECTIONS, Template
-from linkwork.results.listing.column import Column
+from linkwork.writers.report.docx import docx_bytes
+from linkwork.writers.report.findings import SECTIONS, Template
+from linkwork.writers.report.html import html_bytes
+from linkwork.writers.report.pdf import pdf_bytes, typst_text
+from linkwork.writers.report.report import WrittenReport, document_of, report_of
 from tests.export.coarse import coarse
 from tests.library_mechanisms import read_example
 

@@ -9,13 +9,11 @@ import numpy as np
 import pytest
 
 import linkwork as lw
-from linkwork.export.robot.mjcf import mjcf_of
-from linkwork.export.robot.robot import Robot
-from linkwork.export.robot.sdf import sdf_of
-from linkwork.export.robot.urdf import urdf_of
-from linkwork.foundation.names import GROUND
-from linkwork.mechanism.part.pairs import Pair, PairKind
-from linkwork.results.motion import Motion
+from linkwork.core.foundation.names import GROUND
+from linkwork.core.mechanism.part.part import Pair, PairKind
+from linkwork.core.results.motion import Motion
+from linkwork.writers.robot.files import mjcf_of, sdf_of, urdf_of
+from linkwork.writers.robot.robot import Robot
 from tests.export.coarse import coarse
 from tests.library_mechanisms import read_example
 

@@ -13,15 +13,15 @@ import pytest
 from xlsxwriter.worksheet import Worksheet
 
 import linkwork as lw
-from linkwork.export.formulas.cell_formula import CellFormula
-from linkwork.export.workbook import workbook
-from linkwork.export.workbook.cell_names import CellNames
-from linkwork.export.workbook.fast_cells import FastCells
-from linkwork.expression.grammar import parse
-from linkwork.expression.values import value
-from linkwork.foundation.angles import AngleUnit
-from linkwork.foundation.errors import InputError, MissingPackageError
-from linkwork.mechanism.linkage import Linkage
+from linkwork.core.expression.grammar import parse
+from linkwork.core.expression.values import value
+from linkwork.core.foundation.errors import InputError, MissingPackageError
+from linkwork.core.foundation.units import AngleUnit
+from linkwork.core.mechanism.linkage import Linkage
+from linkwork.writers.formulas.closure_formulas import CellFormula
+from linkwork.writers.workbook import workbook
+from linkwork.writers.workbook.book import CellNames
+from linkwork.writers.workbook.layout import FastCells
 from tests.described import described_as
 from tests.export.coarse import coarse
 from tests.oracles.spreadsheet import Spreadsheet, calculated

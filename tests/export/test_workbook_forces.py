@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 import linkwork as lw
-from linkwork.mechanism.linkage import Linkage
+from linkwork.core.mechanism.linkage import Linkage
 from tests.described import described_as
 from tests.export.coarse import coarse
 from tests.forces.random_loads import loaded

@@ -10,10 +10,10 @@ import pytest
 from openpyxl.utils import FORMULAE
 
 import linkwork as lw
-from linkwork.export.formulas.cell_formula import CellFormula
-from linkwork.expression.grammar import parse
-from linkwork.expression.lane_functions import FUNCTIONS
-from linkwork.foundation.angles import AngleUnit
+from linkwork.core.expression.grammar import parse
+from linkwork.core.expression.values import FUNCTIONS
+from linkwork.core.foundation.units import AngleUnit
+from linkwork.writers.formulas.closure_formulas import CellFormula
 from tests.export.coarse import coarse
 from tests.oracles.spreadsheet_functions import ARGUMENTS, calls
 from tests.thinned import thinned

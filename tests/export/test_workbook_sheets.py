@@ -11,11 +11,11 @@ import openpyxl
 import pytest
 
 import linkwork as lw
-from linkwork.export import workbook_of
-from linkwork.export.formulas.dimension_units import dimension_kinds
-from linkwork.export.formulas.traced_equations import traced
-from linkwork.foundation.errors import InputError
-from linkwork.results.quantity import Kind
+from linkwork.core.foundation.errors import InputError
+from linkwork.core.results.quantity import Kind
+from linkwork.writers import workbook_of
+from linkwork.writers.formulas.rate_formulas import dimension_kinds
+from linkwork.writers.formulas.traced import traced
 
 
 def opened(tmp_path: Path, mechanism: Any, **asked: Any) -> Any:

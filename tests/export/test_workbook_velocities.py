@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 import linkwork as lw
-from linkwork.foundation.names import canonical
+from linkwork.core.foundation.names import canonical
 from tests.export.coarse import coarse
 from tests.oracles.spreadsheet import Spreadsheet
 from tests.thinned import thinned

@@ -7,10 +7,10 @@ import math
 import numpy as np
 import pytest
 
-from linkwork.equations.real_rows import FormulaRow
-from linkwork.expression.grammar import parse
-from linkwork.expression.tree import Number
-from linkwork.foundation.angles import AngleUnit
+from linkwork.core.equations.model import FormulaRow
+from linkwork.core.expression.grammar import parse
+from linkwork.core.expression.tree import NumberNode
+from linkwork.core.foundation.units import AngleUnit
 
 FORMULAS = (
     "x + y - x*y", "x/(y + 4)", "x^3 - x^2 + 1", "(x*y)^4", "(y + 4)^-2", "(y + 4)^(x/2)",
@@ -22,7 +22,7 @@ FORMULAS = (
 
 def row_of(text: str, unit: AngleUnit = AngleUnit.RADIAN) -> FormulaRow:
     return FormulaRow(
-        left=parse(text), right=Number(0.0), names=("x", "y"), variables=(0, 1), constants=(),
+        left=parse(text), right=NumberNode(0.0), names=("x", "y"), variables=(0, 1), constants=(),
         unit=unit,
     )  # fmt: skip
 

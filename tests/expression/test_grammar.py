@@ -7,12 +7,11 @@ import math
 import pytest
 from hypothesis import given, strategies as st
 
-from linkwork.expression.grammar import FUNCTIONS, parse, parse_equation
-from linkwork.expression.tree import Binary, Call, Name, Negative, Node, Number
-from linkwork.expression.values import value
-from linkwork.expression.writing import text
-from linkwork.foundation.angles import AngleUnit
-from linkwork.foundation.errors import ExpressionError
+from linkwork.core.expression.grammar import FUNCTIONS, parse, parse_equation
+from linkwork.core.expression.tree import Binary, Call, Name, Negative, Node, NumberNode, text
+from linkwork.core.expression.values import value
+from linkwork.core.foundation.errors import ExpressionError
+from linkwork.core.foundation.units import AngleUnit
 
 X, Y, Z = Name("x"), Name("y"), Name("z")
 
@@ -39,9 +38,9 @@ def number(formula: str, **names: float) -> float:
         ("--x", Negative(Negative(X))),
         ("+x", X),
         ("x**y", Binary("^", X, Y)),
-        ("x²", Binary("^", X, Number(2.0))),
-        ("x¹²*y", Binary("*", Binary("^", X, Number(12.0)), Y)),
-        ("-x²", Negative(Binary("^", X, Number(2.0)))),
+        ("x²", Binary("^", X, NumberNode(2.0))),
+        ("x¹²*y", Binary("*", Binary("^", X, NumberNode(12.0)), Y)),
+        ("-x²", Negative(Binary("^", X, NumberNode(2.0)))),
         ("√(x)", Call("sqrt", (X,))),
         ("x·y", Binary("*", X, Y)),
         ("x⋅y", Binary("*", X, Y)),
@@ -60,10 +59,10 @@ def number(formula: str, **names: float) -> float:
         ("A.x", Name("A.x")),
         ("a'*b_2", Binary("*", Name("a'"), Name("b_2"))),
         ("atan2(y, x)", Call("atan2", (Y, X))),
-        ("1e3", Number(1000.0)),
-        ("1.5E-2", Number(0.015)),
-        (".5", Number(0.5)),
-        ("2.", Number(2.0)),
+        ("1e3", NumberNode(1000.0)),
+        ("1.5E-2", NumberNode(0.015)),
+        (".5", NumberNode(0.5)),
+        ("2.", NumberNode(2.0)),
     ],
 )
 def test_a_formula_reads_as_its_tree(formula: str, tree: Node) -> None:
@@ -214,8 +213,8 @@ NAMES = [Name(n, n) for n in ("a", "a2", "b_1", "x'", "theta12", "sigma", "pi", 
 LEAVES = st.one_of(
     st.sampled_from(NAMES),
     st.sampled_from(["θ₁₂", "φ", "Ω3", "β"]).map(lambda n: parse(n)),
-    st.integers(0, 10**9).map(lambda n: Number(float(n))),
-    st.sampled_from([0.5, 0.001, 1e-9, 1e300, 2.25, 123456.789012]).map(Number),
+    st.integers(0, 10**9).map(lambda n: NumberNode(float(n))),
+    st.sampled_from([0.5, 0.001, 1e-9, 1e300, 2.25, 123456.789012]).map(NumberNode),
 )
 
 

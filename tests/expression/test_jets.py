@@ -11,12 +11,11 @@ import numpy as np
 import numpy.typing as npt
 import pytest
 
-from linkwork.expression.derivative import derivative
-from linkwork.expression.grammar import FUNCTIONS, parse
-from linkwork.expression.jets import Jet, evaluate
-from linkwork.expression.values import value
-from linkwork.expression.writing import text
-from linkwork.foundation.angles import AngleUnit
+from linkwork.core.expression.derivatives import Jet, derivative, evaluate
+from linkwork.core.expression.grammar import FUNCTIONS, parse
+from linkwork.core.expression.tree import text
+from linkwork.core.expression.values import value
+from linkwork.core.foundation.units import AngleUnit
 
 Array = npt.NDArray[np.float64]
 Function = Callable[[Any, Any], Any]

@@ -9,7 +9,7 @@ import pytest
 from click.testing import CliRunner
 
 import linkwork as lw
-from linkwork.cli.main import linkwork
+from linkwork.core.commands.main import linkwork
 from tests.failures.test_positions_that_do_not_exist import four_bar
 
 PAGE = (Path(__file__).parents[2] / "docs" / "why-did-it-fail.md").read_text(encoding="utf-8")

@@ -12,11 +12,11 @@ import pytest
 from click.testing import CliRunner
 
 import linkwork as lw
-from linkwork.cli.main import linkwork
-from linkwork.motion.failure import failing, remedies
-from linkwork.motion.failure.lengths import ChangeableLength, model_with
-from linkwork.motion.failure.other_positions import Elsewhere
-from linkwork.motion.model import Model
+from linkwork.core.commands.main import linkwork
+from linkwork.core.motion.failure import failing, remedies
+from linkwork.core.motion.failure.reach import Elsewhere
+from linkwork.core.motion.failure.remedies import ChangeableLength, model_with
+from linkwork.core.motion.model import Model
 from tests.failures.test_positions_that_do_not_exist import four_bar
 from tests.thinned import thinned
 

@@ -8,8 +8,8 @@ from itertools import combinations
 import numpy as np
 
 import linkwork as lw
-from linkwork.mechanism.linkage import Linkage
-from linkwork.mechanism.loops import Loops
+from linkwork.core.mechanism.linkage import Linkage
+from linkwork.core.mechanism.loops import Loops
 
 __all__ = ["loaded", "rubbed", "sprung"]
 

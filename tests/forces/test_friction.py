@@ -11,12 +11,11 @@ import pytest
 from scipy.optimize import brentq
 
 import linkwork as lw
-from linkwork.foundation.errors import MechanismError, MechanismFileError
-from linkwork.mechanism.linkage import Linkage
-from linkwork.textfile.copying import copy_selection
-from linkwork.textfile.renaming import rename
-from linkwork.textfile.text_edits import TextEdits
-from linkwork.textfile.writer import write_text
+from linkwork.app.edits.entries import copy_selection, rename
+from linkwork.core.foundation.errors import MechanismError, MechanismFileError
+from linkwork.core.mechanism.linkage import Linkage
+from linkwork.core.textfile.text_edits import TextEdits
+from linkwork.core.textfile.writer import write_text
 from tests.described import described_as
 from tests.forces.random_loads import loaded, rubbed
 

@@ -9,9 +9,9 @@ import numpy as np
 import pytest
 
 import linkwork as lw
-from linkwork.foundation.errors import InputError, MechanismError
-from linkwork.mechanism.linkage import Linkage
-from linkwork.results.reactions import ForceStatus
+from linkwork.core.foundation.errors import InputError, MechanismError
+from linkwork.core.mechanism.linkage import Linkage
+from linkwork.forces.results import ForceStatus
 from tests.described import described_as
 
 SLIDER_CRANK = {

@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 import linkwork as lw
-from linkwork.mechanism.linkage import Linkage
-from linkwork.results.reactions import ForceStatus
+from linkwork.core.mechanism.linkage import Linkage
+from linkwork.forces.results import ForceStatus
 from tests.forces.random_loads import loaded
 
 LINKAGES = [

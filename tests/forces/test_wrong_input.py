@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import linkwork as lw
-from linkwork.foundation.errors import key_text
+from linkwork.core.foundation.errors import key_text
 
 BAR = """format = 1
 length = "mm"

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from linkwork.foundation.angles import arc_in_order, least_arc
+from linkwork.core.foundation.units import arc_in_order, least_arc
 
 
 @pytest.mark.parametrize(

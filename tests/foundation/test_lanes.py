@@ -10,15 +10,14 @@ from typing import Any
 import numpy as np
 import pytest
 
-from linkwork.expression.grammar import parse
-from linkwork.expression.tree import Node
-from linkwork.expression.values import value
-from linkwork.foundation import elementwise
-from linkwork.foundation.angles import AngleUnit
-from linkwork.foundation.errors import ExpressionError
-from linkwork.foundation.lanes import LaneArithmetic, rest_of
-from linkwork.foundation.operand import NotElementwise
-from linkwork.mechanism.least_norm import independent, least_norm
+from linkwork.core.expression.grammar import parse
+from linkwork.core.expression.tree import Node
+from linkwork.core.expression.values import value
+from linkwork.core.foundation import lanes as elementwise
+from linkwork.core.foundation.errors import ExpressionError
+from linkwork.core.foundation.lanes import LaneArithmetic, NotElementwise, rest_of
+from linkwork.core.foundation.units import AngleUnit
+from linkwork.core.mechanism.link_shape import independent, least_norm
 
 RNG = np.random.default_rng(9)
 REAL = np.concatenate([RNG.normal(0, 3, 12), [0.0, -1.0, math.pi, -math.pi, 3 * math.pi, 7.5]])

@@ -17,7 +17,7 @@ def package(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Any:
     folder.mkdir()
     (folder / "__init__.py").write_text(
         "from typing import TYPE_CHECKING\n"
-        "from linkwork.foundation.lazy import loader\n"
+        "from linkwork.core.foundation.loading import loader\n"
         "if TYPE_CHECKING:\n"
         "    from lazy_things.one import first as first, one as one\n"
         "    from lazy_things.two import second as second\n"

@@ -9,13 +9,11 @@ from typing import Any
 import numpy as np
 import pytest
 
-from linkwork.export.formulas.linear_form import LinearForm
-from linkwork.export.formulas.traced_number import Trace
-from linkwork.expression.jets import Jet
-from linkwork.expression.tree import Name
-from linkwork.foundation.lanes import LaneArithmetic
-from linkwork.foundation.operand import NotElementwise
-from linkwork.kernels.program.recorder import Recorder
+from linkwork.core.expression.derivatives import Jet
+from linkwork.core.expression.tree import Name
+from linkwork.core.foundation.lanes import LaneArithmetic, NotElementwise
+from linkwork.core.record.recorder import Recorder
+from linkwork.writers.formulas.traced import LinearForm, Trace
 
 
 def _jet(name: str) -> Jet:

@@ -7,8 +7,8 @@ from pathlib import Path
 
 import pytest
 
-from linkwork.foundation.errors import InputError
-from linkwork.foundation.own_files import OwnFiles
+from linkwork.core.foundation.errors import InputError
+from linkwork.core.foundation.files import OwnFiles
 
 _OWN = OwnFiles(
     run="search",

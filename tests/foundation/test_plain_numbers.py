@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 import linkwork as lw
-from linkwork.foundation.plain_numbers import as_told, finite_number, plain_number
+from linkwork.core.foundation.values import as_told, finite_number, plain_number
 
 NO_NUMBERS = [
     ("90", "'90'"),

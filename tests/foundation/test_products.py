@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from linkwork.foundation.products import tall_product
+from linkwork.core.foundation.arrays import tall_product
 
 
 @pytest.mark.parametrize("rows", [0, 1, 255, 256, 257, 1000])

@@ -6,7 +6,7 @@ import threading
 
 import pytest
 
-from linkwork.foundation.sharing import share_out
+from linkwork.core.foundation.loading import share_out
 
 
 @pytest.mark.parametrize("threads", [1, 2, 5])

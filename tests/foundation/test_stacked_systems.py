@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from linkwork.foundation.stacked_systems import inverses, solutions
+from linkwork.core.foundation.arrays import inverses, solutions
 
 
 def test_a_singular_matrix_leaves_the_other_rows_as_they_are_alone() -> None:

@@ -10,8 +10,8 @@ from types import FrameType
 
 import pytest
 
-from linkwork.foundation.errors import InputError
-from linkwork.foundation.written_folder import check_place, written_folder
+from linkwork.core.foundation.errors import InputError
+from linkwork.core.foundation.files import check_place, written_folder
 
 
 def test_a_place_where_no_folder_can_be_is_refused_and_nothing_is_left(tmp_path: Path) -> None:

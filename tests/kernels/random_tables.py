@@ -12,12 +12,11 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
-from linkwork.equations.real_rows import FormulaRow
-from linkwork.expression.grammar import parse_equation
-from linkwork.foundation.angles import AngleUnit
-from linkwork.kernels.loop_table import LoopTable
-from linkwork.kernels.phasor_rows import PhasorRows
-from linkwork.kernels.real_rows import LinearRows
+from linkwork.core.equations.model import FormulaRow
+from linkwork.core.expression.grammar import parse_equation
+from linkwork.core.foundation.units import AngleUnit
+from linkwork.core.table.loop_table import LoopTable
+from linkwork.core.table.rows import LinearRows, PhasorRows
 
 __all__ = ["Example", "random_example"]
 

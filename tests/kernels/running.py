@@ -7,10 +7,15 @@ from collections.abc import Mapping
 import numpy as np
 import numpy.typing as npt
 
-from linkwork.kernels.program.interpreter import LANES, run
-from linkwork.kernels.program.lowering import lower_program, reserve
-from linkwork.kernels.program.program import Program, Registers
-from linkwork.kernels.program.recorder import Recorder
+from linkwork.core.record.recorder import (
+    LANES,
+    Program,
+    Recorder,
+    Registers,
+    lower_program,
+    reserve,
+)
+from linkwork.families.compiled.interpreter import run
 
 __all__ = ["ran", "with_registers"]
 

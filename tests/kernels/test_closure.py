@@ -8,10 +8,10 @@ import numpy as np
 import numpy.typing as npt
 import pytest
 
-from linkwork.foundation.arrays import BoolArray
-from linkwork.kernels.loop_table import LoopTable
-from linkwork.kernels.march.closure import BlockPart, Closure, solve_linear
-from linkwork.kernels.program.recorder import Recorder, Value
+from linkwork.core.foundation.arrays import BoolArray
+from linkwork.core.record.recorder import Recorder, Value
+from linkwork.core.table.loop_table import LoopTable
+from linkwork.families.march.closure import BlockPart, Closure, solve_linear
 from tests.campaigns.positions import random_position
 from tests.kernels.random_tables import random_example
 from tests.kernels.running import ran

@@ -14,18 +14,17 @@ import numpy as np
 import pytest
 
 import linkwork as lw
-from linkwork.foundation.aligned import allocate_aligned
-from linkwork.foundation.arrays import Array
-from linkwork.kernels.march import step_control, sweep_kernel
-from linkwork.kernels.march.sweep_kernel import Steps, SweepKernel
-from linkwork.kernels.program import execution
-from linkwork.kernels.program.code_cache import is_cached, load_compiled
-from linkwork.kernels.program.compiling import CodeFiles
-from linkwork.kernels.program.execution import Execution
-from linkwork.kernels.program.interpreter import LANES, run
-from linkwork.kernels.program.printing import trial_source
-from linkwork.kernels.program.program import SOURCES, Op
-from linkwork.motion.by_kernels import block_parts
+from linkwork.core.foundation.arrays import Array, allocate_aligned
+from linkwork.core.record.printing import trial_source
+from linkwork.core.record.recorder import LANES, SOURCES, Op
+from linkwork.families.by_kernels import block_parts
+from linkwork.families.compiled import interpreter as execution
+from linkwork.families.compiled.code_cache import is_cached, load_compiled
+from linkwork.families.compiled.compiling import CodeFiles
+from linkwork.families.compiled.execution import Execution
+from linkwork.families.compiled.interpreter import run
+from linkwork.families.march import step_trial as step_control, sweep_kernel
+from linkwork.families.march.sweep_kernel import Steps, SweepKernel
 
 PLACES = 5
 _CODE_FILES: Any = CodeFiles  # whose methods have no types

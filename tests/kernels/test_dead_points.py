@@ -6,11 +6,10 @@ import numpy as np
 import numpy.typing as npt
 import pytest
 
-from linkwork.kernels.loop_table import LoopTable
-from linkwork.kernels.march import dead_points as folding
-from linkwork.kernels.march.dead_points import Folds, LastNodes, dead_points
-from linkwork.kernels.phasor_rows import PhasorRows
-from linkwork.kernels.real_rows import LinearRows
+from linkwork.core.table.loop_table import LoopTable
+from linkwork.core.table.rows import LinearRows, PhasorRows
+from linkwork.families.march import dead_points as folding
+from linkwork.families.march.dead_points import Folds, LastNodes, dead_points
 
 Array = npt.NDArray[np.float64]
 #: A crank r with a rod l, driven by the slider x: r e^(it) + l e^(ip) - x = 0, a dead point at

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from flint import acb, arb, ctx
 
-from linkwork.kernels.exact_rows import exact_line, exact_rows
+from linkwork.core.table.rows import exact_line, exact_rows
 from tests.kernels.random_tables import random_example
 
 

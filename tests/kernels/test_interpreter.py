@@ -10,8 +10,8 @@ import numpy.typing as npt
 import pytest
 from flint import arb, ctx
 
-from linkwork.kernels.program.interpreter import LANES, run
-from linkwork.kernels.program.program import Op
+from linkwork.core.record.recorder import LANES, Op
+from linkwork.families.compiled.interpreter import run
 
 Array = npt.NDArray[np.float64]
 ODD = (0.0, -0.0, 1.0, -1.0, 2.5, -3.75, 1e-300, 1e300, math.inf, -math.inf, math.nan)

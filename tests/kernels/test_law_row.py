@@ -9,14 +9,10 @@ import numpy.typing as npt
 import pytest
 from flint import arb, ctx
 
-from linkwork.equations.cam_program import program
-from linkwork.equations.outline import Outline
-from linkwork.kernels.law_row import LawRow
-from linkwork.kernels.loop_table import LoopTable
-from linkwork.kernels.phasor_rows import PhasorRows
-from linkwork.kernels.real_rows import LinearRows
-from linkwork.kernels.table_splitter import TableSplitter
-from linkwork.numerics.proof.kantorovich import weighted_radii
+from linkwork.contacts.profiles import Outline, program
+from linkwork.core.numerics.kantorovich import weighted_radii
+from linkwork.core.table.loop_table import LoopTable, TableSplitter
+from linkwork.core.table.rows import LawRow, LinearRows, PhasorRows
 from tests.numerics.proof_bounds import bounds
 from tests.oracles.ball_laws import ball_jet
 from tests.oracles.balls import BallTable, certainly_above, exactly, newton

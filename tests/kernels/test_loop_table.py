@@ -6,7 +6,7 @@ import numpy as np
 import numpy.typing as npt
 import pytest
 
-from linkwork.kernels.table_splitter import TableSplitter
+from linkwork.core.table.loop_table import TableSplitter
 from tests.kernels.random_tables import Example, random_example
 
 # A complex step has no truncation error at this size, and nothing cancels.

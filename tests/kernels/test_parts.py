@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import pytest
 
-from linkwork.kernels.march.thread_shares import LEAST_LANES, MOST_DESIGNS, share_of_threads
-from linkwork.kernels.program.interpreter import LANES
+from linkwork.core.record.recorder import LANES
+from linkwork.families.march.sweep_kernel import LEAST_LANES, MOST_DESIGNS, share_of_threads
 
 
 @pytest.mark.parametrize("threads", [1, 2, 3, 16])

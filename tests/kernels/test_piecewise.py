@@ -9,10 +9,9 @@ import numpy.typing as npt
 import pytest
 from flint import arb, ctx
 
-from linkwork.equations.cam_program import program
-from linkwork.equations.outline import Outline
-from linkwork.kernels.piecewise import Piecewise
-from linkwork.mechanism.motion_laws import LAWS
+from linkwork.contacts.profiles import Outline, program
+from linkwork.core.mechanism.inputs import LAWS
+from linkwork.core.table.rows import Piecewise
 from tests.oracles.ball_laws import ball_jet, piece_jet
 
 Array = npt.NDArray[np.float64]

@@ -10,9 +10,15 @@ import numpy.typing as npt
 import pytest
 from hypothesis import given, strategies as st
 
-from linkwork.kernels.program.lowering import lower_program, reserve
-from linkwork.kernels.program.program import Op, Program, Registers
-from linkwork.kernels.program.recorder import Recorder, Value
+from linkwork.core.record.recorder import (
+    Op,
+    Program,
+    Recorder,
+    Registers,
+    Value,
+    lower_program,
+    reserve,
+)
 from tests.kernels.running import ran, with_registers
 
 Array = npt.NDArray[np.float64]

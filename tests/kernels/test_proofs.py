@@ -9,8 +9,8 @@ import numpy as np
 import numpy.typing as npt
 import pytest
 
-from linkwork.kernels.loop_table import LoopTable
-from linkwork.numerics.proof.kantorovich import weighted_radii
+from linkwork.core.numerics.kantorovich import weighted_radii
+from linkwork.core.table.loop_table import LoopTable
 from tests.campaigns.lanes import LaneClaims, claims, judge_lane_steps, judge_lanes
 from tests.campaigns.positions import closed, random_position
 from tests.numerics.proof_bounds import bounds

@@ -7,11 +7,9 @@ import numpy.typing as npt
 import pytest
 
 import linkwork as lw
-from linkwork.kernels.march.closure import BlockPart
-from linkwork.kernels.march.position_programs import at_places
-from linkwork.kernels.march.rate_programs import evidence_program, rate_program
-from linkwork.motion.leading_input import leading_input
-from linkwork.motion.model import Model
+from linkwork.core.motion.model import Model, leading_input
+from linkwork.families.march.closure import BlockPart
+from linkwork.families.march.rate_programs import at_places, evidence_program, rate_program
 
 Array = npt.NDArray[np.float64]
 ROWS = 5

@@ -8,23 +8,30 @@ from typing import Any
 import numpy as np
 import pytest
 
-from linkwork.design.precision.problem import PrecisionProblem
-from linkwork.design.precision.start_sets import start_member
-from linkwork.foundation.arrays import ComplexArray
-from linkwork.kernels.paths import PathKernel
-from linkwork.kernels.program.complex_recorder import ComplexRecorder
-from linkwork.kernels.program.interpreter import LANES, run
-from linkwork.kernels.program.lowering import lower_program, reserve
-from linkwork.kernels.program.program import Registers
-from linkwork.kernels.program.recorder import Recorder
-from linkwork.marching.solution_path import ARRIVED, LOST, SINGULAR, PathOptions
-from linkwork.numerics.homotopy.parameter_path import (
+from linkwork.circuits.homotopy.path_tracking import (
+    ARRIVED,
+    LOST,
     QUICK,
+    SINGULAR,
     Equations,
     ParameterPath,
+    PathOptions,
     StraightHomotopy,
-    track_in_batches,
+    track,
 )
+from linkwork.core.foundation.arrays import ComplexArray
+from linkwork.core.record.recorder import (
+    LANES,
+    ComplexRecorder,
+    Recorder,
+    Registers,
+    lower_program,
+    reserve,
+)
+from linkwork.families.compiled.interpreter import run
+from linkwork.families.paths import PathKernel
+from linkwork.synthesis.precision.problem import PrecisionProblem
+from linkwork.synthesis.precision.solving import start_member
 
 ROOTS = np.exp(2j * np.pi * np.arange(3) / 3.0)[:, None]
 
@@ -86,7 +93,7 @@ def test_lanes_and_batches_follow_the_same_paths(threads: int) -> None:
     assert count > LANES
     kernel = PathKernel(StraightHomotopy(problem))
     w, _, state, attempts = kernel.follow(path.ends, member.x[:count], QUICK, threads)
-    batch = track_in_batches(path, member.x[:count], QUICK)
+    batch = track(path, member.x[:count], QUICK)
     assert np.array_equal(state, batch.state)
     good = state == ARRIVED
     assert good.sum() >= count - 1

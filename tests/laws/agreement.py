@@ -8,8 +8,8 @@ import numpy as np
 import numpy.typing as npt
 
 import linkwork as lw
-from linkwork.results.quantity import Kind
-from linkwork.results.series import Series
+from linkwork.core.results.quantity import Kind
+from linkwork.core.results.series import Series
 
 __all__ = ["CLOSE", "agree", "angles_of", "internal", "series_of"]
 

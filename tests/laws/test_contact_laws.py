@@ -10,7 +10,7 @@ import pytest
 from hypothesis import given, settings, strategies as st
 
 import linkwork as lw
-from linkwork.mechanism.linkage import Linkage
+from linkwork.core.mechanism.linkage import Linkage
 from tests.laws.agreement import CLOSE, agree, angles_of, internal, series_of
 from tests.laws.contacts import KINDS, contact
 from tests.laws.transforms import mirrored, scaled

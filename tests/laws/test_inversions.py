@@ -11,9 +11,9 @@ import numpy as np
 import pytest
 
 import linkwork as lw
-from linkwork.foundation.arrays import ComplexArray
-from linkwork.mechanism.inversion import inverted
-from linkwork.mechanism.linkage import Linkage
+from linkwork.core.foundation.arrays import ComplexArray
+from linkwork.core.mechanism.inversion import inverted
+from linkwork.core.mechanism.linkage import Linkage
 from tests.described import described_as
 from tests.laws.contacts import KINDS, contact
 from tests.laws.mechanisms import NAMES, mechanism_of, motion_of, size_of

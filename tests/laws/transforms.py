@@ -8,12 +8,11 @@ from dataclasses import replace
 from typing import Any
 
 import linkwork as lw
-from linkwork.expression.grammar import parse, parse_equation
-from linkwork.expression.tree import Binary, Call, Name, Negative, Node, names_in
-from linkwork.expression.writing import text
-from linkwork.foundation.names import canonical
-from linkwork.mechanism.linkage import Linkage
-from linkwork.mechanism.loops import Loops
+from linkwork.core.expression.grammar import parse, parse_equation
+from linkwork.core.expression.tree import Binary, Call, Name, Negative, Node, names_in, text
+from linkwork.core.foundation.names import canonical
+from linkwork.core.mechanism.linkage import Linkage
+from linkwork.core.mechanism.loops import Loops
 
 __all__ = ["mirrored", "scaled", "turned"]
 

@@ -11,7 +11,7 @@ import numpy.typing as npt
 import pytest
 
 import linkwork as lw
-from linkwork.mechanism.part.noncircular_gear import PitchCurve
+from linkwork.contacts.curves import PitchCurve
 from tests.library.laws import degrees, law, motion_of, same
 from tests.oracles.four_bar import FourBar
 

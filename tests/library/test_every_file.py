@@ -10,9 +10,9 @@ from pathlib import Path
 import pytest
 
 import linkwork as lw
-from linkwork.foundation.certification import Certification
-from linkwork.mechanism.linkage import Linkage
-from linkwork.textfile.schema import json_schema
+from linkwork.core.foundation.statuses import Certification
+from linkwork.core.mechanism.linkage import Linkage
+from linkwork.core.textfile.schema import json_schema
 from tests.library.laws import LAWS, motion_of
 from tests.library_mechanisms import driven_examples, read_example
 

@@ -9,7 +9,7 @@ import pytest
 from scipy.optimize import brentq, root
 
 import linkwork as lw
-from linkwork.foundation.arrays import ComplexArray
+from linkwork.core.foundation.arrays import ComplexArray
 from tests.library.laws import degrees, law, motion_of, same
 from tests.oracles.circles import Jansen, circles_meet
 from tests.oracles.four_bar import FourBar

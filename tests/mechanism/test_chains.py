@@ -10,11 +10,16 @@ import networkx
 import pytest
 
 import linkwork as lw
-from linkwork.mechanism.chain import Chain
-from linkwork.mechanism.chain_graph import orbits, same_inversion
-from linkwork.mechanism.chain_names import chain_name, eight_link_chains, inversion_name
-from linkwork.mechanism.joint import Joint, JointKind
-from linkwork.mechanism.linkage import Linkage
+from linkwork.core.mechanism.chain import (
+    Chain,
+    chain_name,
+    eight_link_chains,
+    inversion_name,
+    orbits,
+    same_inversion,
+)
+from linkwork.core.mechanism.linkage import Linkage
+from linkwork.core.mechanism.part.part import Joint, JointKind
 from tests.described import described_as
 from tests.oracles.chains import canonical_graph6, kinematic_chains, link_classes
 

@@ -9,12 +9,11 @@ import numpy as np
 import pytest
 
 import linkwork as lw
-from linkwork.design.improvement.written_designs import DesignWriter
-from linkwork.mechanism.draft import Draft
-from linkwork.mechanism.link_dimension import Distance, VertexAngle
-from linkwork.mechanism.link_shape import ShapeError, place
-from linkwork.mechanism.varied_number import number_named, with_numbers
-from linkwork.motion.model import model_of
+from linkwork.core.mechanism.link_shape import Distance, ShapeError, VertexAngle, place
+from linkwork.core.mechanism.linkage import Draft
+from linkwork.core.mechanism.varied_numbers import number_named, with_numbers
+from linkwork.core.motion.model import model_of
+from linkwork.synthesis.improvement.lanes import DesignWriter
 
 
 @pytest.mark.parametrize("sketched", [0.7, 3.0])

@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 import linkwork as lw
-from linkwork.foundation.errors import choices
+from linkwork.core.foundation.errors import choices
 
 FRAME = """\
 format = 1
@@ -44,7 +44,7 @@ def test_wrong_names_are_compared_with_names_that_begin_alike(
         compared.append(len(names))
         return names[-1:]
 
-    monkeypatch.setattr("linkwork.foundation.errors.get_close_matches", count)
+    monkeypatch.setattr("linkwork.core.foundation.errors.get_close_matches", count)
     names = [f"P{k}" for k in range(COUNT)] + ["crank"]
     assert choices("links", names, "crnk").startswith("(links: crank, P0, ")
     choices("points", names, "P1x")

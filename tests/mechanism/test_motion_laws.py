@@ -14,8 +14,8 @@ import numpy as np
 import numpy.typing as npt
 import pytest
 
-from linkwork.equations.cam_program import program
-from linkwork.mechanism.motion_laws import LAWS, pieces_of
+from linkwork.contacts.profiles import program
+from linkwork.core.mechanism.inputs import LAWS, pieces_of
 
 Array = npt.NDArray[np.float64]
 PI = math.pi

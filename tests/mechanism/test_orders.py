@@ -10,10 +10,9 @@ import numpy as np
 import pytest
 
 import linkwork as lw
-from linkwork.cli.check import check_lines
-from linkwork.mechanism.link_dimension import Distance, Given, VertexAngle
-from linkwork.mechanism.link_shape import LinkShape, place
-from linkwork.mechanism.linkage import Linkage
+from linkwork.core.commands.check import check_lines
+from linkwork.core.mechanism.link_shape import Distance, Given, LinkShape, VertexAngle, place
+from linkwork.core.mechanism.linkage import Linkage
 from tests.campaigns.orders import partly_dimensioned, permuted, renamed
 from tests.described import described_as
 from tests.laws.contacts import contact

@@ -10,8 +10,7 @@ import numpy as np
 import pytest
 
 import linkwork as lw
-from linkwork.motion.classifying.as_linkage import Seen, as_linkage
-from linkwork.motion.classifying.classify import block_groups, classify
+from linkwork.circuits.classification import Seen, as_linkage, block_groups, classify
 
 FOUR_BAR = {
     "ground": ("O", "C"),

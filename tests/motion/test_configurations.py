@@ -11,10 +11,10 @@ import pytest
 
 import linkwork as lw
 from linkwork import Completeness
-from linkwork.marching.solution_path import PathOptions
-from linkwork.motion.assembly import assembling, block_roots
-from linkwork.motion.assembly.assembling import positions_at
-from linkwork.numerics.homotopy import bilinear_family, isolated_roots
+from linkwork.circuits import assembling, assembling as block_roots
+from linkwork.circuits.assembling import positions_at
+from linkwork.circuits.homotopy import bilinear_family, isolated_roots
+from linkwork.circuits.homotopy.path_tracking import PathOptions
 from tests.campaigns.configurations import judge_truss
 from tests.laws.mechanisms import NAMES, mechanism_of
 from tests.oracles.four_bar import FourBar
@@ -371,7 +371,7 @@ def test_later_blocks_are_solved_for_every_configuration_before() -> None:
 
 
 def test_too_many_configurations_are_not_listed(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("linkwork.motion.assembly.assembling._LARGEST", 64)
+    monkeypatch.setattr("linkwork.circuits.assembling._LARGEST", 64)
     loops = {f"l{k}": f"2*e^(i*q) + 9*e^(i*a{k}) = 5 + 8*e^(i*b{k})" for k in range(7)}
     guess = {f"{letter}{k}": 60.0 for k in range(7) for letter in "ab"}
     found = looped(loops, **guess).configurations()

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 import linkwork as lw
-from linkwork.motion.tracking import turns_freely
+from linkwork.core.motion.following import turns_freely
 from tests.laws.contacts import KINDS, contact, xy
 
 FREE = {

@@ -10,8 +10,8 @@ import pytest
 
 import linkwork as lw
 from linkwork import Completeness
-from linkwork.motion.circuit import dead_inputs
-from linkwork.numerics.homotopy import isolated_roots
+from linkwork.circuits import dead_inputs
+from linkwork.circuits.homotopy import isolated_roots
 from tests.campaigns.circuits import CRANKED, dead_inputs_of
 from tests.laws.mechanisms import NAMES, mechanism_of
 from tests.oracles.cranked import cranked_truss
@@ -266,7 +266,7 @@ def test_gears_have_no_list_and_a_reason(text: str, reason: str) -> None:
 
 
 def test_too_many_loops_are_a_reason(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("linkwork.motion.circuit.dead_inputs._MOST_PATHS", 6)
+    monkeypatch.setattr("linkwork.circuits.dead_inputs._MOST_PATHS", 6)
     found = dead_inputs_of(lw.example("double-four-bar"))
     assert found.reason == (
         "the equations of θ4, θ5 depend on 2 loops; their dead points would take 20 paths, "

@@ -6,11 +6,10 @@ import numpy as np
 import pytest
 
 import linkwork as lw
-from linkwork.drawing import Disc, Hatch, Polygon, Role, scene_of
-from linkwork.drawing.attachment import Frame
-from linkwork.drawing.moving_scene import moving_scene
-from linkwork.foundation.arrays import ComplexArray
-from linkwork.mechanism.skeleton import Rail
+from linkwork.core.drawing import Disc, Hatch, Polygon, Role, scene_of
+from linkwork.core.drawing.moving_scene import Frame, moving_scene
+from linkwork.core.foundation.arrays import ComplexArray
+from linkwork.core.mechanism.skeleton import Rail
 
 Where = complex | tuple[str, tuple[str, str]]
 FOUND: dict[str, list[tuple[str, tuple[str, ...], Where]]] = {

@@ -11,9 +11,9 @@ import numpy as np
 import pytest
 
 import linkwork as lw
-from linkwork.foundation.arrays import Array
-from linkwork.mechanism.motion_laws import INPUT_LAWS
-from linkwork.textfile import write_text
+from linkwork.core.foundation.arrays import Array
+from linkwork.core.mechanism.inputs import INPUT_LAWS
+from linkwork.core.textfile import write_text
 
 
 def _driven(law: Any, name: str = "four-bar", **fields: Any) -> lw.Mechanism:

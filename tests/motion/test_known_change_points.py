@@ -8,14 +8,13 @@ import numpy as np
 import pytest
 
 import linkwork as lw
-from linkwork.foundation.arrays import Array
-from linkwork.motion.assembly.assembling import positions_at
-from linkwork.motion.circuit.arcs import Explorer
-from linkwork.motion.circuit.followed_circuit import explorer_of, is_regular
-from linkwork.motion.circuit.walks import Walks
-from linkwork.motion.drive import Drive
-from linkwork.numerics.continuation import curve_crossing
-from linkwork.numerics.continuation.change_point import Crossing
+from linkwork.circuits.arcs import Explorer, Walks
+from linkwork.circuits.assembling import positions_at
+from linkwork.circuits.followed_circuit import explorer_of, is_regular
+from linkwork.core.foundation.arrays import Array
+from linkwork.core.motion.following import Drive
+from linkwork.core.numerics import curve_tracing as curve_crossing
+from linkwork.core.numerics.change_point import Crossing
 from tests.oracles.trains import Loop, train
 
 _ONE_CROSSES = ("galloway", "toggle-press", "beam-engine")
@@ -82,7 +81,7 @@ def test_a_change_point_is_located_once(name: str, monkeypatch: pytest.MonkeyPat
         return located[-1]
 
     for owner in ("curve_crossing", "curve_tracing"):
-        path = f"linkwork.numerics.continuation.{owner}.crossing_beyond"
+        path = f"linkwork._dropped.{owner}.crossing_beyond"
         monkeypatch.setattr(path, counted)
     drive = Drive.of_circuits(lw.example(name).model)
     explorer = _visited(explorer_of(drive), _seeds(drive))

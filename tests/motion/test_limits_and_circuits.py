@@ -14,9 +14,8 @@ from flint import arb, ctx
 from scipy.optimize import minimize_scalar
 
 import linkwork as lw
-from linkwork.foundation.arrays import BoolArray, IndexArray
-from linkwork.foundation.certification import Certification
-from linkwork.foundation.circuit_end import CircuitEnd
+from linkwork.core.foundation.arrays import BoolArray, IndexArray
+from linkwork.core.foundation.statuses import Certification, CircuitEnd
 from tests.oracles.four_bar import FourBar, random_crank_rockers
 
 Array = npt.NDArray[np.float64]

@@ -16,19 +16,15 @@ import numpy as np
 import pytest
 
 import linkwork as lw
-from linkwork.foundation.arrays import Array
-from linkwork.kernels.march import position_programs
-from linkwork.kernels.program import kernel_cache
-from linkwork.kernels.program.kernel_cache import (
-    is_compiled,
-    say_that_it_compiles,
-    sources_digest,
-)
-from linkwork.motion import by_kernels
-from linkwork.motion.by_kernels import rows as rows_module
-from linkwork.motion.drive import Drive
-from linkwork.numerics.continuation.branch_tracking import Node
-from linkwork.numerics.rows import SolvedRows
+from linkwork.core.foundation.arrays import Array
+from linkwork.core.motion.following import Drive
+from linkwork.core.numerics.branch_tracking import Node
+from linkwork.core.numerics.system import SolvedRows
+from linkwork.families import by_kernels
+from linkwork.families.by_kernels import rows as rows_module
+from linkwork.families.compiled import code_cache as kernel_cache
+from linkwork.families.compiled.code_cache import is_compiled, say_that_it_compiles, sources_digest
+from linkwork.families.march import rate_programs as position_programs
 from tests.library_mechanisms import read_example
 from tests.thinned import thinned
 
@@ -257,9 +253,9 @@ def test_compiled_code_is_loaded_when_enough_was_solved_without_it() -> None:
         "m = lw.example('four-bar')\n"
         "m.sweep()\n"
         "assert 'numba' not in sys.modules\n"
-        "from linkwork.motion import by_kernels\n"
+        "from linkwork.core.motion import by_kernels\n"
         "print(by_kernels.kernels_pay(m.model, 10**6), 'numba' in sys.modules)\n"
-        "import linkwork.kernels.march.independent\n"
+        "import linkwork.families.march.independent\n"
         "print(by_kernels.kernels_pay(m.model, 20), by_kernels.kernels_pay(m.model, 361))\n"
     )
     at_hand = is_compiled("independent")
@@ -272,8 +268,8 @@ def test_compiled_code_is_loaded_when_enough_was_solved_without_it() -> None:
 def test_many_small_tables_count_like_a_long_one() -> None:
     code = (
         "import linkwork as lw\n"
-        "import linkwork.kernels.march.independent\n"
-        "from linkwork.motion import by_kernels\n"
+        "import linkwork.families.march.independent\n"
+        "from linkwork.core.motion import by_kernels\n"
         "one, other = lw.example('four-bar').model, lw.example('jansen-leg').model\n"
         "print([by_kernels.kernels_pay(one, 361) for _ in range(9)].index(True))\n"
         "print(by_kernels.kernels_pay(other, 361))\n"
@@ -318,7 +314,7 @@ def test_every_source_that_is_compiled_has_a_part_in_the_digest(tmp_path: Path) 
     changed = tmp_path / "linkwork"
     shutil.copytree(package, changed, ignore=shutil.ignore_patterns("__pycache__", "*.npz"))
     code = (
-        "import sys; from linkwork.kernels.program.kernel_cache import sources_digest as d; "
+        "import sys; from linkwork.families.compiled.code_cache import sources_digest as d; "
         "print(d().hex())"
     )
 
@@ -337,7 +333,7 @@ def test_every_source_that_is_compiled_has_a_part_in_the_digest(tmp_path: Path) 
 
 
 def test_numba_keeps_the_digest_by_which_compiled_code_is_known() -> None:
-    import_module("linkwork.kernels.march.independent")
+    import_module("linkwork.families.march.independent")
     indices = [index.read_bytes() for index in kernel_cache._indices("independent")]
     assert any(sources_digest() in index for index in indices)
 

@@ -10,9 +10,9 @@ import pytest
 from hypothesis import given, strategies as st
 
 import linkwork as lw
-from linkwork.mechanism.linkage import Linkage
-from linkwork.mechanism.loops import Loops
-from linkwork.motion.classifying.as_linkage import Seen, as_linkage
+from linkwork.circuits.classification import Seen, as_linkage
+from linkwork.core.mechanism.linkage import Linkage
+from linkwork.core.mechanism.loops import Loops
 from tests.equations.linkages import LINKAGES
 from tests.library_mechanisms import read_example
 from tests.motion.dyad_linkages import dyad_linkage

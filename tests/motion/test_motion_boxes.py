@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from linkwork.motion.motion_boxes import Boxes, boxes_of, motions_of_points, refined, variables_of
+from linkwork.core.motion.extremes import Boxes, boxes_of, motions_of_points, refined, variables_of
 from tests.library_mechanisms import read_example
 
 # turning and sliding pairs, slides on turning links, a spline, gears

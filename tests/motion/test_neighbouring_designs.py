@@ -10,9 +10,9 @@ import pytest
 from hypothesis import given, settings, strategies as st
 
 import linkwork as lw
-from linkwork.foundation.certification import Certification
-from linkwork.mechanism.linkage import Linkage
-from linkwork.motion import warm_started
+from linkwork.core.foundation.statuses import Certification
+from linkwork.core.mechanism.linkage import Linkage
+from linkwork.core.motion import warm_started
 from tests.described import described_as
 
 

@@ -9,8 +9,7 @@ import numpy as np
 import pytest
 
 import linkwork as lw
-from linkwork.foundation.certification import Certification
-from linkwork.foundation.status import Status
+from linkwork.core.foundation.statuses import Certification, Status
 
 X = {"A1": 30.0, "A2": 50.0, "A3": -40.0}
 Y = {"B1": 60.0, "B2": 80.0, "B3": -70.0}

@@ -7,8 +7,8 @@ import math
 import pytest
 
 import linkwork as lw
-from linkwork.mechanism.linkage import Linkage
-from linkwork.motion import solve_round_start
+from linkwork.core.mechanism.linkage import Linkage
+from linkwork.core.motion import solve_round_start
 
 
 @pytest.mark.parametrize(

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 import linkwork as lw
-from linkwork.motion import limits
+from linkwork.core.motion import limits
 from tests.oracles.trains import Loop, apart, parallelogram, straight_motion, train, turned
 from tests.thinned import thinned
 

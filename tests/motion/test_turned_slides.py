@@ -7,8 +7,8 @@ from dataclasses import replace
 import numpy as np
 
 import linkwork as lw
-from linkwork.kernels.real_rows import LinearRows
-from linkwork.motion.assembly.turned_slides import turned_slides
+from linkwork.circuits.assembling import turned_slides
+from linkwork.core.table.rows import LinearRows
 
 
 def _shaper() -> lw.Mechanism:

@@ -10,7 +10,7 @@ import pytest
 from flint import arb, ctx
 
 import linkwork as lw
-from linkwork.numerics.continuation import path_proof
+from linkwork.core.numerics import path_proof
 from tests.oracles.four_bar import FourBar
 from tests.thinned import thinned
 

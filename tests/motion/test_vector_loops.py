@@ -5,9 +5,9 @@ from __future__ import annotations
 import pytest
 
 import linkwork as lw
-from linkwork.foundation.errors import InputError
-from linkwork.motion import vector_loops
-from linkwork.results.vector_loop import VectorLoop
+from linkwork.core.foundation.errors import InputError
+from linkwork.core.motion import vector_loops
+from linkwork.core.results.vector_loop import VectorLoop
 
 MECHANISMS = [
     "four-bar",

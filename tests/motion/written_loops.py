@@ -9,12 +9,12 @@ from itertools import pairwise
 from typing import Any
 
 import linkwork as lw
-from linkwork.equations.frames import Frames
-from linkwork.equations.model import LoopEquations, Term
-from linkwork.equations.part.index import rows_of_parts
-from linkwork.foundation.names import GROUND
-from linkwork.mechanism.description import Problems
-from linkwork.mechanism.linkage import Linkage
+from linkwork.core.equations.frames import Frames
+from linkwork.core.equations.model import LoopEquations, Term
+from linkwork.core.equations.parts import rows_of_parts
+from linkwork.core.foundation.names import GROUND
+from linkwork.core.mechanism.description import Problems
+from linkwork.core.mechanism.linkage import Linkage
 
 __all__ = ["as_loops"]
 

@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from linkwork.foundation.arrays import Array
-from linkwork.numerics.proof.kantorovich import Bounds, Majorant, expansion
-from linkwork.numerics.system import System
+from linkwork.core.foundation.arrays import Array
+from linkwork.core.numerics.kantorovich import Bounds, Majorant, expansion
+from linkwork.core.numerics.system import System
 
 __all__ = ["bounds"]
 

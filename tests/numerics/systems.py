@@ -9,10 +9,9 @@ from typing import NoReturn
 import numpy as np
 import numpy.typing as npt
 
-from linkwork.kernels.loop_table import LoopTable
-from linkwork.kernels.phasor_rows import PhasorRows
-from linkwork.kernels.real_rows import LinearRows
-from linkwork.numerics.block_solver import Block, BlockSolver
+from linkwork.core.numerics.block_solver import Block, BlockSolver
+from linkwork.core.table.loop_table import LoopTable
+from linkwork.core.table.rows import LinearRows, PhasorRows
 from tests.oracles.four_bar import FourBar
 
 __all__ = ["Cubic", "blocks_of", "four_bar_table", "loop_table", "watt_table"]

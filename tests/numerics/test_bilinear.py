@@ -7,17 +7,17 @@ from typing import Any
 import numpy as np
 import pytest
 
-from linkwork.marching.solution_path import PathOptions
-from linkwork.numerics.homotopy import isolated_roots as roots_module
-from linkwork.numerics.homotopy.bilinear import BilinearSystem, prove_roots
-from linkwork.numerics.homotopy.bilinear_family import structure_of
-from linkwork.numerics.homotopy.bilinear_homotopy import (
+from linkwork.circuits.homotopy import isolated_roots as roots_module
+from linkwork.circuits.homotopy.bilinear_family import structure_of
+from linkwork.circuits.homotopy.bilinear_homotopy import (
     ParameterHomotopy,
     StartHomotopy,
     null_space,
 )
-from linkwork.numerics.homotopy.polynomial_system import polish_roots
-from linkwork.numerics.homotopy.quadratic_roots import quadratic_roots
+from linkwork.circuits.homotopy.path_tracking import PathOptions
+from linkwork.circuits.homotopy.polynomial_system import polish_roots
+from linkwork.circuits.homotopy.quadratic_roots import quadratic_roots
+from linkwork.core.numerics.bilinear import BilinearSystem, prove_roots
 from tests.numerics.bilinear_systems import (
     THETA_18,
     TRUSS_18,

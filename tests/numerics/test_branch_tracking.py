@@ -11,9 +11,8 @@ import numpy.typing as npt
 import pytest
 
 from linkwork import Input, Mechanism, Status, linkage
-from linkwork.marching.loop import Attempt
-from linkwork.numerics.block_solver import BlockSolver
-from linkwork.numerics.continuation.branch_tracking import (
+from linkwork.core.numerics.block_solver import BlockSolver
+from linkwork.core.numerics.branch_tracking import (
     InputPath,
     Node,
     Track,
@@ -22,6 +21,7 @@ from linkwork.numerics.continuation.branch_tracking import (
     node_at,
     rows_on_track,
 )
+from linkwork.core.numerics.marching import Attempt
 from tests.numerics.systems import blocks_of, four_bar_table
 from tests.oracles.four_bar import FourBar, random_crank_rockers
 from tests.thinned import thinned

@@ -12,17 +12,17 @@ import pytest
 from flint import arb, ctx
 
 import linkwork as lw
-from linkwork.equations.parametrized_table import ParametrizedTable
-from linkwork.foundation.circuit_end import CircuitEnd
-from linkwork.motion.curve_branches import TracedCurve, branches_of, trace_with_proof
-from linkwork.motion.leading_input import leading_input
-from linkwork.motion.start import first_position
-from linkwork.numerics.continuation.branch_tracking import InputPath
-from linkwork.numerics.continuation.curve_proof import prove_curve
-from linkwork.numerics.continuation.curve_tracing import Curve, CurveOptions, Leg, trace
-from linkwork.numerics.continuation.local_parametrization import same_position
-from linkwork.numerics.continuation.turning_point import TurningPoint
-from linkwork.numerics.newton import NewtonOptions
+from linkwork.circuits.branches import TracedCurve, branches_of, trace_with_proof
+from linkwork.core.equations.compiling import ParametrizedTable
+from linkwork.core.foundation.statuses import CircuitEnd
+from linkwork.core.motion.model import leading_input
+from linkwork.core.motion.solving import first_position
+from linkwork.core.numerics.branch_tracking import InputPath
+from linkwork.core.numerics.curve_proof import prove_curve
+from linkwork.core.numerics.curve_tracing import Curve, CurveOptions, Leg, trace
+from linkwork.core.numerics.local_parametrization import same_position
+from linkwork.core.numerics.newton import NewtonOptions
+from linkwork.core.numerics.turning_point import TurningPoint
 from tests.numerics.systems import four_bar_table
 from tests.oracles.four_bar import FourBar
 from tests.thinned import thinned

@@ -8,7 +8,7 @@ from itertools import combinations
 import numpy as np
 import pytest
 
-from linkwork.numerics.decomposition import BlockForm, block_form
+from linkwork.core.numerics.decomposition import BlockForm, block_form
 
 Pattern = list[list[int]]
 

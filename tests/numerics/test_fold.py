@@ -9,10 +9,10 @@ import numpy as np
 import numpy.typing as npt
 import pytest
 
-from linkwork.kernels.loop_table import LoopTable
-from linkwork.numerics.continuation.fold import Fold, FoldFamily, locate_fold
-from linkwork.numerics.joined_blocks import JoinedBlocks
-from linkwork.numerics.least_squares import nearest_miss
+from linkwork.core.numerics.decomposition import JoinedBlocks
+from linkwork.core.numerics.fold import Fold, FoldFamily, locate_fold
+from linkwork.core.numerics.newton import nearest_miss
+from linkwork.core.table.loop_table import LoopTable
 from tests.numerics.systems import blocks_of, loop_table
 
 Array = npt.NDArray[np.float64]

@@ -7,16 +7,16 @@ from collections.abc import Callable
 import numpy as np
 import pytest
 
-from linkwork.foundation.arrays import AnyArray, Array, ComplexArray
-from linkwork.marching.solution_path import (
+from linkwork.circuits.homotopy.path_tracking import (
     ARRIVED,
     BOLD,
     CAREFUL,
     LOST,
     SINGULAR,
     PathOptions,
+    track,
 )
-from linkwork.numerics.homotopy.path_tracking import track
+from linkwork.core.foundation.arrays import AnyArray, Array, ComplexArray
 
 Right = Callable[[Array], tuple[AnyArray, AnyArray]]  # real or complex
 

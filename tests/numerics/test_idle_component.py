@@ -6,11 +6,11 @@ import numpy as np
 import pytest
 
 import linkwork as lw
-from linkwork.equations.dead_point_form import DeadPointForm, dead_point_form
-from linkwork.motion.drive import Drive
-from linkwork.motion.leading_input import leading_input
-from linkwork.numerics.homotopy.dead_point_family import dead_point_roots
-from linkwork.numerics.homotopy.idle_component import RealPoints, keeps_complex_input, real_motion
+from linkwork.circuits.dead_point_form import DeadPointForm, dead_point_form
+from linkwork.circuits.homotopy.dead_point_family import dead_point_roots
+from linkwork.circuits.homotopy.idle_component import RealPoints, keeps_complex_input, real_motion
+from linkwork.core.motion.following import Drive
+from linkwork.core.motion.model import leading_input
 
 KITE = "e^(i*t) + 2*e^(i*p) = 1 + 2*e^(i*q)"
 ISOSCELES = "2*e^(i*p) + 2*e^(i*q) = s"

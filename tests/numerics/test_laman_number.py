@@ -8,14 +8,13 @@ import numpy as np
 import pytest
 
 import linkwork as lw
-from linkwork.equations.directions import direction_form
-from linkwork.kernels.loop_table import LoopTable
-from linkwork.numerics.homotopy import laman_number as module
-from linkwork.numerics.homotopy.bilinear_family import Structure, structure_of
-from linkwork.numerics.homotopy.column_sums import Columns, column_ranks, random_closures
-from linkwork.numerics.homotopy.isolated_roots import isolated_roots
-from linkwork.numerics.homotopy.laman_number import laman_number
-from linkwork.numerics.homotopy.solution_bound import bound_by_sums
+from linkwork.circuits.homotopy import counts as module
+from linkwork.circuits.homotopy.bilinear_family import Structure, structure_of
+from linkwork.circuits.homotopy.counts import bound_by_sums, laman_number
+from linkwork.circuits.homotopy.isolated_roots import isolated_roots
+from linkwork.core.equations.compiling import direction_form
+from linkwork.core.numerics.bilinear import Columns, column_ranks, random_closures
+from linkwork.core.table.loop_table import LoopTable
 from tests.oracles.frameworks import MOST_REALISATIONS, bars_of, bars_of_number, cycle_columns
 from tests.oracles.trusses import FIVE_LINKS, NINE_LINKS, SEVEN_LINKS, edges_of, truss
 from tests.thinned import thinned

@@ -6,9 +6,8 @@ import numpy as np
 import pytest
 from scipy.optimize import least_squares
 
-from linkwork.foundation.arrays import Array, IndexArray
-from linkwork.numerics.lane_bounds import Box, OwnVariables
-from linkwork.numerics.lane_least_squares import Residuals, minimise, starts_of
+from linkwork.core.foundation.arrays import Array, IndexArray
+from linkwork.synthesis.lane_least_squares import Box, OwnVariables, Residuals, minimise, starts_of
 
 _POINTS = np.array([[1.9, -0.4], [2.1, 0.3], [1.7, 1.2], [0.6, 1.9], [-0.5, 1.8]])
 

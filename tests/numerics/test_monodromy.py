@@ -8,19 +8,23 @@ from typing import Any
 import numpy as np
 import pytest
 
-from linkwork.foundation.arrays import BoolArray, ComplexArray
-from linkwork.foundation.completeness import Completeness
-from linkwork.marching.solution_path import SINGULAR
-from linkwork.numerics.homotopy.bilinear_homotopy import normal_numbers
-from linkwork.numerics.homotopy.monodromy import Member, first_of_each, solve_by_monodromy
-from linkwork.numerics.homotopy.parameter_path import (
+from linkwork.circuits.homotopy.bilinear_homotopy import normal_numbers
+from linkwork.circuits.homotopy.monodromy import (
+    Member,
+    first_of_each,
+    solve_by_monodromy,
+    trace_defect,
+)
+from linkwork.circuits.homotopy.parameter_roots import roots_at
+from linkwork.circuits.homotopy.path_tracking import (
+    SINGULAR,
     Equations,
     ParameterPath,
     polish_ends,
-    track_in_batches,
+    track,
 )
-from linkwork.numerics.homotopy.parameter_roots import roots_at
-from linkwork.numerics.homotopy.trace_test import trace_defect
+from linkwork.core.foundation.arrays import BoolArray, ComplexArray
+from linkwork.core.foundation.statuses import Completeness
 
 
 class Quintic:
@@ -56,7 +60,7 @@ class Quintic:
 
 @pytest.fixture(scope="module")
 def solved() -> Member:
-    return solve_by_monodromy(Quintic(), np.random.default_rng(1), track_in_batches)
+    return solve_by_monodromy(Quintic(), np.random.default_rng(1), track)
 
 
 def test_closed_paths_find_all_solutions(solved: Member) -> None:
@@ -67,16 +71,16 @@ def test_closed_paths_find_all_solutions(solved: Member) -> None:
 
 
 def test_the_trace_of_all_solutions_is_straight_and_that_of_fewer_is_not(solved: Member) -> None:
-    whole = trace_defect(Quintic(), solved, np.random.default_rng(2), track_in_batches)
+    whole = trace_defect(Quintic(), solved, np.random.default_rng(2), track)
     assert (whole.lost, whole.relative < 1e-10) == (0, True)
     less = Member(parameters=solved.parameters, x=solved.x[1:])
-    part = trace_defect(Quintic(), less, np.random.default_rng(2), track_in_batches)
+    part = trace_defect(Quintic(), less, np.random.default_rng(2), track)
     assert part.relative > 1e-3
 
 
 def roots_of(solved: Member, *c: complex) -> Any:
     goal = np.array(c, dtype=complex)
-    return roots_at(Quintic(), solved, goal, track_in_batches, np.random.default_rng(3))
+    return roots_at(Quintic(), solved, goal, track, np.random.default_rng(3))
 
 
 def test_solutions_of_a_real_member_are_closed_under_conjugation(solved: Member) -> None:
@@ -99,7 +103,7 @@ def test_lost_paths_are_replaced_by_mirror_images_and_detours(solved: Member) ->
     calls = []
 
     def careless(path: ParameterPath, start: ComplexArray, options: Any) -> Any:
-        paths = track_in_batches(path, start, options)
+        paths = track(path, start, options)
         calls.append(len(start))
         if len(calls) <= 2:  # the straight paths: the first two are lost, twice
             paths.state[:2] = 2
@@ -122,7 +126,7 @@ def test_detours_of_special_tasks_end_when_one_finds_nothing(
     calls = []
 
     def blind(path: ParameterPath, start: ComplexArray, options: Any) -> Any:
-        paths = track_in_batches(path, start, options)
+        paths = track(path, start, options)
         calls.append(len(start))
         paths.state[np.abs(paths.w[:, 0] - lost) < 1e-3] = 2
         return paths
@@ -140,7 +144,7 @@ def test_of_paths_that_meet_one_is_followed_again(solved: Member) -> None:
     calls = []
 
     def jumping(path: ParameterPath, start: ComplexArray, options: Any) -> Any:
-        paths = track_in_batches(path, start, options)
+        paths = track(path, start, options)
         calls.append(len(start))
         if len(calls) == 1:
             paths.w[3] = paths.w[1]
@@ -158,7 +162,7 @@ def test_a_path_that_stalls_beside_its_end_leaves_no_singular_solution_of_comple
     """The mirror image shows where the path leads; with all solutions found there is no other."""
 
     def stalling(path: ParameterPath, start: ComplexArray, options: Any) -> Any:
-        paths = track_in_batches(path, start, options)
+        paths = track(path, start, options)
         stalled = paths.w[:, 0].imag > 0.1
         paths.w[stalled] += 0.1
         paths.near[stalled], paths.state[stalled] = paths.w[stalled], SINGULAR

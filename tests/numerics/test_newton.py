@@ -10,11 +10,10 @@ import numpy as np
 import numpy.typing as npt
 import pytest
 
-from linkwork.foundation.status import Status
-from linkwork.kernels.loop_table import LoopTable
-from linkwork.numerics.least_squares import nearest_miss
-from linkwork.numerics.newton import NewtonOptions, newton
-from linkwork.numerics.rows import SolvedRows
+from linkwork.core.foundation.statuses import Status
+from linkwork.core.numerics.newton import NewtonOptions, nearest_miss, newton
+from linkwork.core.numerics.system import SolvedRows
+from linkwork.core.table.loop_table import LoopTable
 from tests.numerics.systems import Cubic, four_bar_table, loop_table, watt_table
 from tests.oracles.four_bar import FourBar, random_crank_rockers
 

@@ -13,30 +13,22 @@ import pytest
 from flint import arb
 
 import linkwork as lw
-from linkwork.foundation.certification import Certification
-from linkwork.foundation.status import Status
-from linkwork.kernels.loop_table import LoopTable
-from linkwork.kernels.phasor_rows import PhasorRows
-from linkwork.kernels.real_rows import LinearRows
-from linkwork.motion.proving import prove_rows
-from linkwork.numerics.block_solver import BlockSolver
-from linkwork.numerics.continuation import path_proof, step_halving
-from linkwork.numerics.continuation.branch_tracking import (
-    InputPath,
-    Track,
-    follow,
-    node_at,
-    rows_on_track,
-)
-from linkwork.numerics.continuation.path_proof import ProvenPath, prove_path, prove_paths
-from linkwork.numerics.proof.kantorovich import Bounds, weighted_radii
-from linkwork.numerics.proof.position_proof import (
+from linkwork.core.foundation.statuses import Certification, Status
+from linkwork.core.motion.positions import prove_rows
+from linkwork.core.numerics import path_proof, path_proof as step_halving
+from linkwork.core.numerics.block_solver import BlockSolver
+from linkwork.core.numerics.branch_tracking import InputPath, Track, follow, node_at, rows_on_track
+from linkwork.core.numerics.kantorovich import Bounds, weighted_radii
+from linkwork.core.numerics.path_proof import ProvenPath, prove_path, prove_paths
+from linkwork.core.numerics.position_proof import (
     Proof,
     prove,
     reach,
     rounding_of_inputs,
     steps_connected,
 )
+from linkwork.core.table.loop_table import LoopTable
+from linkwork.core.table.rows import LinearRows, PhasorRows
 from tests.campaigns.certificates import judge
 from tests.campaigns.positions import library_positions, random_position
 from tests.campaigns.steps import beads_of, judge_steps

@@ -10,17 +10,21 @@ import numpy as np
 import pytest
 
 import linkwork as lw
-from linkwork.foundation.arrays import Array
-from linkwork.foundation.status import Status
-from linkwork.kernels.program import kernel_cache
-from linkwork.kernels.single import quick_rows
-from linkwork.kernels.single.packed_blocks import pack
-from linkwork.numerics.block_solver import BlockSolver
-from linkwork.numerics.elimination import inverse_and_sign, solve_linear
-from linkwork.numerics.newton import NewtonOptions
-from linkwork.numerics.proof.position_proof import expansions, prove, reach
-from linkwork.numerics.rows import SolvedRows
-from linkwork.numerics.single_rows import SingleBlock, SingleRows
+from linkwork.core.foundation.arrays import Array
+from linkwork.core.foundation.statuses import Status
+from linkwork.core.numerics.block_solver import BlockSolver
+from linkwork.core.numerics.newton import NewtonOptions
+from linkwork.core.numerics.position_proof import expansions, prove, reach
+from linkwork.core.numerics.single_rows import (
+    SingleBlock,
+    SingleRows,
+    inverse_and_sign,
+    solve_linear,
+)
+from linkwork.core.numerics.system import SolvedRows
+from linkwork.core.table.packed_blocks import pack
+from linkwork.families.compiled import code_cache as kernel_cache
+from linkwork.families.single import quick_rows
 
 #: Dyads, coupled loops, sliding lengths, gears and belts.
 _LOOPS_AND_LINES = [

@@ -7,22 +7,20 @@ import math
 import numpy as np
 import pytest
 
-from linkwork.marching.solution_path import CAREFUL
-from linkwork.numerics.homotopy import isolated_roots as roots_module
-from linkwork.numerics.homotopy.bilinear import prove_roots
-from linkwork.numerics.homotopy.bilinear_family import Structure, structure_of
-from linkwork.numerics.homotopy.bilinear_homotopy import StartHomotopy
-from linkwork.numerics.homotopy.column_sums import columns_of, sums_hold
-from linkwork.numerics.homotopy.isolated_roots import isolated_roots
-from linkwork.numerics.homotopy.laman_number import laman_number
-from linkwork.numerics.homotopy.path_tracking import track
-from linkwork.numerics.homotopy.polynomial_system import distinct_solutions
-from linkwork.numerics.homotopy.solution_bound import (
+from linkwork.circuits.homotopy import isolated_roots as roots_module
+from linkwork.circuits.homotopy.bilinear_family import Structure, structure_of
+from linkwork.circuits.homotopy.bilinear_homotopy import StartHomotopy
+from linkwork.circuits.homotopy.counts import (
     Products,
     Theorem,
     bound_by_products,
     bound_by_sums,
+    laman_number,
 )
+from linkwork.circuits.homotopy.isolated_roots import isolated_roots
+from linkwork.circuits.homotopy.path_tracking import CAREFUL, track
+from linkwork.circuits.homotopy.polynomial_system import distinct_solutions
+from linkwork.core.numerics.bilinear import columns_of, prove_roots, sums_hold
 from tests.numerics.bilinear_systems import angles_only
 from tests.thinned import thinned
 

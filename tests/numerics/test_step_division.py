@@ -7,11 +7,10 @@ import math
 import numpy as np
 import pytest
 
-from linkwork.equations.parametrized_table import ParametrizedTable
-from linkwork.numerics.continuation import step_division
-from linkwork.numerics.continuation.branch_tracking import InputPath
-from linkwork.numerics.continuation.starting_value import StartingValue
-from linkwork.numerics.continuation.step_division import divide_step, reach
+from linkwork.core.equations.compiling import ParametrizedTable
+from linkwork.core.numerics import curve_tracing as step_division
+from linkwork.core.numerics.branch_tracking import InputPath
+from linkwork.core.numerics.curve_tracing import StartingValue, divide_step, reach
 from tests.numerics.systems import four_bar_table
 from tests.oracles.four_bar import FourBar
 

@@ -6,7 +6,7 @@ from fractions import Fraction
 
 from flint import arb, fmpq
 
-from linkwork.kernels.piecewise import Piecewise
+from linkwork.core.table.rows import Piecewise
 
 __all__ = ["ball_jet", "exact", "piece_jet"]
 

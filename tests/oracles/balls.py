@@ -13,8 +13,8 @@ import numpy as np
 import numpy.typing as npt
 from flint import acb, arb, arb_mat, ctx, fmpq
 
-from linkwork.kernels.law_row import LawRow
-from linkwork.kernels.loop_table import LoopTable
+from linkwork.core.table.loop_table import LoopTable
+from linkwork.core.table.rows import LawRow
 from tests.oracles.ball_laws import ball_jet
 
 __all__ = ["BallTable", "ball", "certainly_above", "exactly", "newton"]

@@ -10,7 +10,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from linkwork.foundation.arrays import Array, ComplexArray
+from linkwork.core.foundation.arrays import Array, ComplexArray
 
 __all__ = ["crank_turns"]
 

@@ -6,7 +6,7 @@ import numpy as np
 import numpy.typing as npt
 
 import linkwork as lw
-from linkwork.mechanism.linkage import Linkage
+from linkwork.core.mechanism.linkage import Linkage
 
 __all__ = ["Seen", "gap_of_face", "gap_of_point"]
 

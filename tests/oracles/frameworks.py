@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from itertools import combinations
 
-from linkwork.numerics.homotopy.column_sums import Columns
+from linkwork.core.numerics.bilinear import Columns
 
 __all__ = ["MOST_REALISATIONS", "bars_of", "bars_of_number", "cycle_columns"]
 

@@ -15,24 +15,19 @@ from typing import Any
 import numpy as np
 from flint import acb, arb, ctx
 
-from linkwork.expression.grammar import parse, parse_equation
-from linkwork.expression.tree import Binary, Call, Name, Negative, Node, Number
-from linkwork.foundation.names import GROUND, canonical
-from linkwork.mechanism.description import Description
-from linkwork.mechanism.linkage import Linkage
-from linkwork.mechanism.loops import Loops, PlainEquations
-from linkwork.mechanism.part.belt import Belt
-from linkwork.mechanism.part.cam import Cam, follower_frame
-from linkwork.mechanism.part.cylinder import Cylinder
-from linkwork.mechanism.part.gear import Gear
-from linkwork.mechanism.part.guide import guide_named
-from linkwork.mechanism.part.rack import Rack
-from linkwork.mechanism.part.rolling import Rolling
-from linkwork.mechanism.part.slider import Slider
-from linkwork.mechanism.part.slot import Slot
-from linkwork.mechanism.part.spring import Spring
-from linkwork.mechanism.part.weld import Weld
-from linkwork.mechanism.varied_number import VariedNumber
+from linkwork.contacts.cams import Cam, follower_frame
+from linkwork.core.expression.grammar import parse, parse_equation
+from linkwork.core.expression.tree import Binary, Call, Name, Negative, Node, NumberNode
+from linkwork.core.foundation.names import GROUND, canonical
+from linkwork.core.mechanism.description import Description
+from linkwork.core.mechanism.linkage import Linkage
+from linkwork.core.mechanism.loops import Loops, PlainEquations
+from linkwork.core.mechanism.part.gears import Belt, Gear, Rack
+from linkwork.core.mechanism.part.guides import Cylinder, Slider, Slot, guide_named
+from linkwork.core.mechanism.part.rolling import Rolling
+from linkwork.core.mechanism.part.springs import Spring
+from linkwork.core.mechanism.part.weld import Weld
+from linkwork.core.mechanism.varied_numbers import VariedNumber
 
 __all__ = ["DIGITS", "NotStated", "StatedEquations", "stated"]
 
@@ -71,7 +66,7 @@ def evaluate(
     exponents, in radians.
     """
     match node:
-        case Number():
+        case NumberNode():
             return arb(node.value)
         case Name():
             constants: dict[str, Callable[[], Ball]] = {

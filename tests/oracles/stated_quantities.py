@@ -10,14 +10,14 @@ from typing import Any
 import numpy as np
 from flint import acb, arb, ctx
 
-from linkwork.expression.grammar import parse
-from linkwork.foundation.names import canonical
-from linkwork.mechanism.description import Description
-from linkwork.mechanism.part.cam import CamOutline, Follower
-from linkwork.mechanism.varied_number import VariedNumber
-from linkwork.motion.model import Model
-from linkwork.results.quantities.asked import Asked, Group
-from linkwork.results.quantity import Kind
+from linkwork.contacts.cams import CamOutline, Follower
+from linkwork.core.expression.grammar import parse
+from linkwork.core.foundation.names import canonical
+from linkwork.core.mechanism.description import Description
+from linkwork.core.mechanism.varied_numbers import VariedNumber
+from linkwork.core.motion.model import Model
+from linkwork.core.results.quantities.definition import Asked, Group
+from linkwork.core.results.quantity import Kind
 from tests.oracles.stated_equations import DIGITS, NotStated, StatedEquations, evaluate, stated
 
 __all__ = ["StatedRow"]

@@ -4,8 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from linkwork.results.csv_text import csv_text
-from linkwork.results.table import Table
+from linkwork.core.results.tables import Table, csv_text
 
 
 def test_zeros_have_no_sign_and_missing_numbers_are_empty() -> None:

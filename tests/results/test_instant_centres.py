@@ -9,8 +9,8 @@ import numpy as np
 import pytest
 
 import linkwork as lw
-from linkwork.foundation.errors import InputError, UnknownNameError
-from linkwork.results.instant_centres import centrodes, instant_centres
+from linkwork.core.foundation.errors import InputError, UnknownNameError
+from linkwork.core.results.link_motion import centrodes, instant_centres
 
 MECHANISMS = [
     "four-bar",

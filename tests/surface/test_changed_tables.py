@@ -5,9 +5,9 @@ from typing import Any
 import pytest
 
 import linkwork as lw
-from linkwork.foundation.errors import InputError, UnknownNameError
-from linkwork.mechanism.linkage import Linkage
-from linkwork.mechanism.loops import Loops
+from linkwork.core.foundation.errors import InputError, UnknownNameError
+from linkwork.core.mechanism.linkage import Linkage
+from linkwork.core.mechanism.loops import Loops
 from tests.described import described_as
 
 

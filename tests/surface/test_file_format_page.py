@@ -9,8 +9,8 @@ from typing import Any
 
 import pytest
 
-from linkwork.mechanism.motion_laws import LAWS
-from linkwork.textfile import json_schema
+from linkwork.core.mechanism.inputs import LAWS
+from linkwork.core.textfile import json_schema
 
 PAGE = (Path(__file__).parents[2] / "docs" / "file-format.md").read_text(encoding="utf-8")
 TABLES = (

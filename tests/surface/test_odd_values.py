@@ -10,9 +10,9 @@ import numpy as np
 import pytest
 
 import linkwork as lw
-from linkwork import batch
-from linkwork.batch.study import summary_of
-from linkwork.drawing.pose import Pose
+from linkwork import families as batch
+from linkwork.core.drawing.pose import Pose
+from linkwork.families.study import summary_of
 from tests.failures.test_words_that_help import BAR as PARTS
 
 BAR = lw.example("four-bar")

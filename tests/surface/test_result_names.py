@@ -55,7 +55,7 @@ def _numpy_numbers(value: object, path: str) -> Iterator[str]:
     elif isinstance(value, tuple | list):
         for k, part in enumerate(value):
             yield from _numpy_numbers(part, f"{path}[{k}]")
-    elif type(value).__module__.startswith("linkwork.results"):
+    elif type(value).__module__.startswith("linkwork.core.results"):
         own = [name for name in dir(type(value)) if not name.startswith("_")]
         for name in own:
             part = getattr(value, name, None)

@@ -10,7 +10,7 @@ from collections.abc import Iterator
 import pytest
 
 import linkwork as lw
-from linkwork.foundation.internal import internal_members
+from linkwork.core.foundation.errors import internal_members
 from scripts.docsite.api_page import ALIASES, public_members, public_names
 
 _OUTSIDE = {

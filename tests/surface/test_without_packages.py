@@ -27,8 +27,8 @@ class Missing:
 sys.meta_path.insert(0, Missing())
 import linkwork as lw
 from linkwork.api import example_text
-from linkwork.design.synthesis.solving import solve_task
-from linkwork.viewer.live.browser_desk import BrowserDesk
+from linkwork.synthesis.solvers.solving import solve_task
+from linkwork.app.live.browser_desk import BrowserDesk
 
 said, told = {}, []
 for name in ("four-bar", "jansen-leg", "rapier-drive"):

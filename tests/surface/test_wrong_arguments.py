@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 import linkwork as lw
-from linkwork.batch import random
+from linkwork.families import random
 
 BAR: Any = lw.example("four-bar")  # asked for what its types refuse
 draw: Any = random

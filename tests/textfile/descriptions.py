@@ -6,16 +6,14 @@ from typing import Any
 
 from hypothesis import strategies as st
 
-from linkwork.foundation.angles import AngleUnit
-from linkwork.foundation.names import canonical
-from linkwork.mechanism.driven_input import Input
-from linkwork.mechanism.linkage import Linkage
-from linkwork.mechanism.loops import Loops, PlainEquations
-from linkwork.mechanism.part.cylinder import Cylinder
-from linkwork.mechanism.part.slider import Slider
-from linkwork.mechanism.part.slot import Slot
-from linkwork.mechanism.part.spring import Spring
-from linkwork.mechanism.question import HIDDEN, Question
+from linkwork.core.foundation.names import canonical
+from linkwork.core.foundation.units import AngleUnit
+from linkwork.core.mechanism.description import HIDDEN, Question
+from linkwork.core.mechanism.inputs import Input
+from linkwork.core.mechanism.linkage import Linkage
+from linkwork.core.mechanism.loops import Loops, PlainEquations
+from linkwork.core.mechanism.part.guides import Cylinder, Slider, Slot
+from linkwork.core.mechanism.part.springs import Spring
 
 __all__ = ["descriptions", "linkages", "loop_systems", "plain_systems"]
 

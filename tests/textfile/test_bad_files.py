@@ -6,8 +6,8 @@ from pathlib import Path
 
 import pytest
 
-from linkwork.foundation.errors import MechanismError, MechanismFileError, Problem
-from linkwork.textfile import read_bytes, read_file, read_text
+from linkwork.core.foundation.errors import MechanismError, MechanismFileError, Problem
+from linkwork.core.textfile import read_bytes, read_file, read_text
 from tests.textfile.bad_files import CASES, BadFile
 from tests.textfile.samples import SAMPLES
 from tests.thinned import thinned

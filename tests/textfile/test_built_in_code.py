@@ -7,10 +7,10 @@ from typing import Any
 
 import pytest
 
-from linkwork.foundation.errors import MechanismError, Problem
-from linkwork.mechanism.driven_input import Input
-from linkwork.mechanism.loops import Loops, PlainEquations
-from linkwork.textfile import read_text
+from linkwork.core.foundation.errors import MechanismError, Problem
+from linkwork.core.mechanism.inputs import Input
+from linkwork.core.mechanism.loops import Loops, PlainEquations
+from linkwork.core.textfile import read_text
 from tests.textfile.samples import SAMPLES
 
 

@@ -10,13 +10,20 @@ from functools import partial
 
 from hypothesis import given, settings, strategies as st
 
-from linkwork.expression.grammar import FUNCTIONS, parse, parse_equation
-from linkwork.expression.tree import Binary, Call, Name, Negative, Node, Number
-from linkwork.expression.values import value
-from linkwork.expression.writing import text as written
-from linkwork.foundation.angles import AngleUnit
-from linkwork.foundation.errors import ExpressionError, LinkworkError
-from linkwork.textfile import read_bytes, read_text
+from linkwork.core.expression.grammar import FUNCTIONS, parse, parse_equation
+from linkwork.core.expression.tree import (
+    Binary,
+    Call,
+    Name,
+    Negative,
+    Node,
+    NumberNode,
+    text as written,
+)
+from linkwork.core.expression.values import value
+from linkwork.core.foundation.errors import ExpressionError, LinkworkError
+from linkwork.core.foundation.units import AngleUnit
+from linkwork.core.textfile import read_bytes, read_text
 from tests.textfile.samples import SAMPLES
 
 TOML_PIECES = [
@@ -133,7 +140,7 @@ def is_product(node: Node) -> bool:
 
 
 trees: st.SearchStrategy[Node] = st.recursive(
-    st.builds(Number, numbers) | st.builds(lambda n: Name(n, n), names), compound, max_leaves=12
+    st.builds(NumberNode, numbers) | st.builds(lambda n: Name(n, n), names), compound, max_leaves=12
 )
 
 
@@ -154,7 +161,7 @@ def test_a_formula_has_a_finite_value_or_a_reason(tree: Node, unit: AngleUnit) -
 
 def test_reading_imports_neither_the_writer_s_nor_the_schema_s_packages() -> None:
     code = (
-        "import sys, linkwork.textfile; "
+        "import sys, linkwork.core.textfile; "
         "print(sorted({'tomlkit', 'jsonschema', 'scipy', 'hypothesis'} & set(sys.modules)))"
     )
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)

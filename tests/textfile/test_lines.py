@@ -9,7 +9,7 @@ import pytest
 import tomlkit
 from hypothesis import given, strategies as st
 
-from linkwork.textfile.lines import Lines, Path
+from linkwork.core.textfile.toml_text import KeyPath, Lines
 from tests.textfile.samples import SAMPLES
 
 HARD = '''\
@@ -42,7 +42,7 @@ k = 2
 deep = 1
 quotes = ["""a"""", \'\'\'b\'\'\'\', 3]
 '''
-WHERE: dict[Path, int] = {
+WHERE: dict[KeyPath, int] = {
     ("format",): 2,
     ("quoted θ",): 3,
     ("a",): 4,
@@ -96,7 +96,7 @@ def test_a_name_is_found_in_any_spelling() -> None:
     assert lines.line(("lengths", "A theta1")) == 5
 
 
-def paths_in(entry: Any, path: Path = ()) -> list[Path]:
+def paths_in(entry: Any, path: KeyPath = ()) -> list[KeyPath]:
     """Every path of TOML data, as an independent walk finds them."""
     found = [path] if path else []
     pairs = entry.items() if isinstance(entry, dict) else enumerate(entry)

@@ -8,10 +8,10 @@ from pathlib import Path
 import pytest
 
 import linkwork as lw
-from linkwork.foundation.errors import InputError, MechanismFileError
-from linkwork.textfile.link import LONGEST, fragment_of, is_link, link_of, text_of_link
-from linkwork.textfile.toml_text import LARGEST
-from linkwork.textfile.writer import write_text
+from linkwork.core.foundation.errors import InputError, MechanismFileError
+from linkwork.core.textfile.link import LONGEST, fragment_of, is_link, link_of, text_of_link
+from linkwork.core.textfile.toml_text import LARGEST
+from linkwork.core.textfile.writer import write_text
 from tests.campaigns.links import forged, link_campaign, squeezed
 
 APP = "https://example.org/linkwork/"
@@ -45,7 +45,7 @@ def test_a_link_of_an_earlier_version_of_linkwork_is_still_read() -> None:
 
 
 def test_the_dictionary_of_version_1_never_changes() -> None:
-    words = Path(lw.textfile.__file__).with_name("link_words.txt").read_text("utf-8")
+    words = Path(lw.core.textfile.__file__).with_name("link_words.txt").read_text("utf-8")
     digest = hashlib.sha256(words.encode()).hexdigest()
     assert digest == "0a08d7b1226895bbfc0ae6fe393d6ee3a043b45530e4b7f71db627fac6c6b706", (
         "another dictionary is another version of the link"

@@ -6,13 +6,12 @@ import numpy as np
 import pytest
 
 import linkwork as lw
-from linkwork.foundation.errors import InputError
-from linkwork.foundation.names import canonical
-from linkwork.mechanism.linkage import Linkage
-from linkwork.textfile.copying import copy_selection, mirror_numbers
-from linkwork.textfile.library import example_text
-from linkwork.textfile.renaming import rename
-from linkwork.textfile.text_edits import TextEdits
+from linkwork.app.edits.entries import copy_selection, mirror_numbers, rename
+from linkwork.core.foundation.errors import InputError
+from linkwork.core.foundation.names import canonical
+from linkwork.core.mechanism.linkage import Linkage
+from linkwork.core.textfile.reader import example_text
+from linkwork.core.textfile.text_edits import TextEdits
 
 TRIED = [
     "excavator",

@@ -9,8 +9,8 @@ from typing import Any
 import jsonschema
 import pytest
 
-from linkwork.foundation.errors import MechanismFileError
-from linkwork.textfile import json_schema, read_text, schema_text, write_text
+from linkwork.core.foundation.errors import MechanismFileError
+from linkwork.core.textfile import json_schema, read_text, schema_text, write_text
 from tests.textfile.bad_files import CASES
 from tests.textfile.samples import SAMPLES
 
@@ -47,7 +47,7 @@ def test_the_schema_is_a_schema() -> None:
 
 
 def test_the_published_copy_is_this_schema() -> None:
-    published = files("linkwork.textfile").joinpath("mechanism.schema.json")
+    published = files("linkwork.core.textfile").joinpath("mechanism.schema.json")
     assert published.read_text(encoding="utf-8") == schema_text()
 
 

@@ -8,8 +8,8 @@ import pytest
 from hypothesis import given, settings, strategies as st
 
 import linkwork as lw
-from linkwork.mechanism.varied_number import VariedNumber, varied_numbers
-from linkwork.textfile.text_edits import TextEdits
+from linkwork.core.mechanism.varied_numbers import VariedNumber, varied_numbers
+from linkwork.core.textfile.text_edits import TextEdits
 
 TEXT = """\
 # head

@@ -12,10 +12,10 @@ import pytest
 from hypothesis import given
 
 import linkwork as lw
-from linkwork.foundation.errors import InputError
-from linkwork.mechanism.description import Description
-from linkwork.mechanism.loops import PlainEquations
-from linkwork.textfile import read_file, read_text, save, write_text
+from linkwork.core.foundation.errors import InputError
+from linkwork.core.mechanism.description import Description
+from linkwork.core.mechanism.loops import PlainEquations
+from linkwork.core.textfile import read_file, read_text, save, write_text
 from tests.textfile.descriptions import descriptions
 from tests.textfile.samples import SAMPLES
 

@@ -11,7 +11,7 @@ from typing import Any
 import pytest
 
 import linkwork as lw
-from linkwork.viewer import motion_page, offline_page
+from linkwork.app import motion_page, offline_page
 
 _NAMES = ("chromium", "chromium-browser", "google-chrome")
 

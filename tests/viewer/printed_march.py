@@ -10,18 +10,18 @@ from typing import Any
 
 import numpy as np
 
-from linkwork.batch.printed_solver import PrintedSolver
-from linkwork.foundation.arrays import Array
-from linkwork.kernels.march.march_programs import NODES
-from linkwork.kernels.march.step_control import START_STEPS, STEPS
-from linkwork.kernels.program.program import ROLES
-from linkwork.marching import prediction, step_size
-from linkwork.viewer.page_data import SolverData
+from linkwork.app.pages.page_data import SolverData
+from linkwork.core.foundation.arrays import Array
+from linkwork.core.numerics import marching as prediction, marching as step_size
+from linkwork.core.record.recorder import ROLES
+from linkwork.families.march.march_programs import NODES
+from linkwork.families.march.step_trial import START_STEPS, STEPS
+from linkwork.families.printed_solver import PrintedSolver
 
 _HEAD = """\
 import math
 
-from linkwork.kernels.program import sine
+from linkwork.families.compiled import interpreter as sine
 
 sin_cos = sine.sin_cos.py_func
 

@@ -13,9 +13,9 @@ import pytest
 from PIL import Image
 
 import linkwork as lw
-from linkwork.drawing import Arc, Role, Scene
-from linkwork.drawing.moving_scene import MovingScene
-from linkwork.viewer import FilmOptions, animation, check_animation
+from linkwork.app import FilmOptions, animation, check_animation
+from linkwork.core.drawing import Arc, Role, Scene
+from linkwork.core.drawing.moving_scene import MovingScene
 
 _FEW = FilmOptions(rows=6, fps=20, dpi=40)
 

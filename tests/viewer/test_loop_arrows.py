@@ -6,10 +6,10 @@ import numpy as np
 import pytest
 
 import linkwork as lw
-from linkwork.drawing.captions import printed_formula
-from linkwork.viewer.loop_arrows import loop_arrows
-from linkwork.viewer.packing import unpressed
-from linkwork.viewer.page_data import VectorData
+from linkwork.app.pages.packing import unpressed
+from linkwork.app.pages.page_building import loop_arrows
+from linkwork.app.pages.page_data import VectorData
+from linkwork.core.drawing.pose import printed_formula
 from tests.library_mechanisms import read_example
 from tests.thinned import thinned
 from tests.viewer.unpacking import unpacked

@@ -12,10 +12,9 @@ import numpy as np
 import pytest
 
 import linkwork as lw
-from linkwork.drawing import DARK, LIGHT
-from linkwork.drawing.mechanism_scene import scene_of
-from linkwork.drawing.scene import Disc, Role
-from linkwork.drawing.theme import Theme
+from linkwork.core.drawing import DARK, LIGHT
+from linkwork.core.drawing.mechanism_scene import scene_of
+from linkwork.core.drawing.scene import Disc, Role, Theme
 
 _SVG = "{http://www.w3.org/2000/svg}"
 _HOSTILE = '<script>alert("1")</script> & <b>'

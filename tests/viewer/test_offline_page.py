@@ -13,15 +13,14 @@ import numpy as np
 import pytest
 
 import linkwork as lw
-from linkwork.drawing import render
-from linkwork.drawing.moving_scene import moving_scene
-from linkwork.drawing.scene import Disc, Role
-from linkwork.mechanism.linkage import Linkage
-from linkwork.results.force import Force
-from linkwork.viewer import drawn_page, motion_page, offline_page
-from linkwork.viewer.offline_page import page_json
-from linkwork.viewer.packing import unpressed
-from linkwork.viewer.play_order import play_order
+from linkwork.app import drawn_page, motion_page, offline_page
+from linkwork.app.pages.offline_page import page_json
+from linkwork.app.pages.packing import play_order, unpressed
+from linkwork.core.drawing import render
+from linkwork.core.drawing.moving_scene import moving_scene
+from linkwork.core.drawing.scene import Disc, Role
+from linkwork.core.mechanism.linkage import Linkage
+from linkwork.forces.results import Force
 from tests.described import described_as
 
 Open = Callable[..., Any]

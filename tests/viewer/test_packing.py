@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from hypothesis import given, strategies as st
 
-from linkwork.viewer.packing import packed, shortened, unpressed
+from linkwork.app.pages.packing import packed, shortened, unpressed
 from tests.viewer.unpacking import unpacked
 
 _FULL = 2.0**-988  # smaller numbers have not ten digits left

@@ -9,10 +9,10 @@ from typing import Any
 import pytest
 
 import linkwork as lw
-from linkwork.foundation.errors import MechanismError
-from linkwork.mechanism.question import Question
-from linkwork.viewer import motion_page
-from linkwork.viewer.page_questions import answers_of, questions_of
+from linkwork.app import motion_page
+from linkwork.app.pages.page_building import answers_of, questions_of
+from linkwork.core.foundation.errors import MechanismError
+from linkwork.core.mechanism.description import Question
 
 LOCKS = Question(text="At which crank angle does it lock?", answer="dead points", tolerance=0.5)
 

@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 import linkwork as lw
-from linkwork.mechanism.linkage import Linkage
-from linkwork.viewer.play_order import falling, play_order
+from linkwork.app.pages.packing import falling, play_order
+from linkwork.core.mechanism.linkage import Linkage
 from tests.described import described_as
 
 

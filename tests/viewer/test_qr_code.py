@@ -9,7 +9,7 @@ import sys
 import pytest
 
 import linkwork as lw
-from linkwork.viewer.qr_code import qr_png, qr_svg
+from linkwork.app.pages.offline_page import qr_png, qr_svg
 
 LINK = "https://example.org/" + lw.example("four-bar").link()
 

@@ -15,12 +15,12 @@ import pytest
 from click.testing import CliRunner
 
 import linkwork as lw
-from linkwork.batch import record_design
-from linkwork.batch.printed_solver import print_solver
-from linkwork.cli.main import linkwork
-from linkwork.foundation.errors import InputError
-from linkwork.kernels.program.languages import PYTHON, C
-from linkwork.mechanism.varied_number import varied_numbers, with_numbers
+from linkwork.core.commands.main import linkwork
+from linkwork.core.foundation.errors import InputError
+from linkwork.core.mechanism.varied_numbers import varied_numbers, with_numbers
+from linkwork.core.record.printing import PYTHON, C
+from linkwork.families import record_design
+from linkwork.families.printed_solver import print_solver
 from tests.viewer.printed_march import PlainMarch, imported
 
 CASES = {

@@ -13,9 +13,9 @@ import pytest
 import traitlets
 
 import linkwork as lw
-from linkwork.viewer import motion_page, motions_widget
-from linkwork.viewer.offline_page import page_json
-from linkwork.viewer.widget import _widget_class
+from linkwork.app import motion_page, motions_widget
+from linkwork.app.pages.notebook import _widget_class
+from linkwork.app.pages.offline_page import page_json
 
 
 @pytest.fixture(scope="module")
@@ -158,7 +158,7 @@ Mounted = Callable[..., Any]
 @pytest.fixture
 def notebook(browser: Any, tmp_path: Path) -> Any:
     """A page that imports the widget's script as anywidget does; fails on any message."""
-    script = (resources.files("linkwork.viewer") / "static" / "widget.js").read_text("utf-8")
+    script = (resources.files("linkwork.app") / "static" / "widget.js").read_text("utf-8")
     target = tmp_path / "notebook.html"
     assert "</script" not in script
     holder = f'<script id="esm" type="text/plain">{script}</script>\n<script>\nwindow.told'

@@ -6,9 +6,9 @@ import base64
 
 import numpy as np
 
-from linkwork.foundation.arrays import Array, BoolArray, CountArray
-from linkwork.viewer.packing import PLAIN, SHORT
-from linkwork.viewer.page_data import PackedColumn
+from linkwork.app.pages.packing import PLAIN, SHORT
+from linkwork.app.pages.page_data import PackedColumn
+from linkwork.core.foundation.arrays import Array, BoolArray, CountArray
 
 __all__ = ["unpacked"]
 

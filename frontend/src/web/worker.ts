@@ -84,17 +84,17 @@ const IMPORT = `
 from pyodide.ffi import can_run_sync, run_sync
 
 from linkwork.api import example_text, loads
-from linkwork.viewer.live.browser_desk import BrowserDesk
+from linkwork.app.live.browser_desk import BrowserDesk
 
 
 def solve_task(task, **options):
-    from linkwork.design.synthesis.solving import solve_task as solve
+    from linkwork.synthesis.solvers.solving import solve_task as solve
 
     return solve(task, **options)
 
 
 def suggesting():
-    from linkwork.design.suggestion import suggesting as found
+    from linkwork.synthesis.suggestion import suggesting as found
 
     return found
 `;

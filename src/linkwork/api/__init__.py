@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from linkwork.foundation.lazy import loader
+from linkwork.core.foundation.loading import loader
 
 if TYPE_CHECKING:
     from linkwork.api.foreign import Imported as Imported, imported as imported
@@ -18,6 +18,6 @@ if TYPE_CHECKING:
     )
     from linkwork.api.mechanism import Mechanism as Mechanism
     from linkwork.api.presenters import register_presenters as register_presenters
-    from linkwork.textfile.library import example_text as example_text, examples as examples
+    from linkwork.core.textfile.reader import example_text as example_text, examples as examples
 else:
     __getattr__ = loader(__name__)

@@ -6,19 +6,16 @@ from collections.abc import Mapping
 from dataclasses import replace
 from typing import TYPE_CHECKING, Any, Self
 
-from linkwork import equations as closure, motion, textfile
-from linkwork.foundation.errors import InputError, MechanismError
-from linkwork.foundation.internal import internal
-from linkwork.foundation.plain_numbers import as_told
-from linkwork.mechanism.description import Description
-from linkwork.mechanism.dimensions import Number
-from linkwork.mechanism.driven_input import Input
-from linkwork.mechanism.field_types import made_of, merged
-from linkwork.mechanism.varied_number import numbers_named, with_numbers
+from linkwork.core import equations as closure, motion, textfile
+from linkwork.core.foundation.errors import InputError, MechanismError, internal
+from linkwork.core.foundation.values import as_told
+from linkwork.core.mechanism.description import Description, made_of, merged
+from linkwork.core.mechanism.dimensions import Number
+from linkwork.core.mechanism.inputs import Input
+from linkwork.core.mechanism.varied_numbers import numbers_named, with_numbers
 
 if TYPE_CHECKING:
-    from linkwork.results.check import CheckReport
-    from linkwork.results.classification import Inversion
+    from linkwork.core.results.check import CheckReport, Inversion
 
 __all__ = ["DescribedMechanism"]
 

@@ -7,16 +7,15 @@ from typing import TYPE_CHECKING, Any
 
 from linkwork import design
 from linkwork.api.dynamic import DynamicMechanism
-from linkwork.foundation.errors import InputError
-from linkwork.foundation.plain_numbers import as_told
+from linkwork.core.foundation.errors import InputError
+from linkwork.core.foundation.values import as_told
 
 if TYPE_CHECKING:
-    from linkwork.design.improvement.improved_design import ImprovedDesign
-    from linkwork.foundation.arrays import Array
-    from linkwork.results.motion import Motion
-    from linkwork.results.position import Position
-    from linkwork.results.sensitivity import Sensitivity
-    from linkwork.results.tolerance import Tolerance
+    from linkwork.core.foundation.arrays import Array
+    from linkwork.core.results.motion import Motion
+    from linkwork.core.results.position import Position
+    from linkwork.design.tolerance_results import Sensitivity, Tolerance
+    from linkwork.synthesis.improvement.proved_design import ImprovedDesign
 
 __all__ = ["DesignedMechanism"]
 

@@ -11,21 +11,18 @@ from pathlib import Path
 
 from linkwork.api.mechanism import Mechanism
 from linkwork.api.task_copy import REFUSED, task_copy
-from linkwork.design.defects.judged_design import JudgedDesign
-from linkwork.design.synthesis.designs_table import designs_table, front_of
-from linkwork.design.synthesis.result import Synthesis
-from linkwork.design.tasks.task import Task
-from linkwork.drawing import SceneOptions, render
-from linkwork.drawing.charts.front_chart import front_chart
-from linkwork.drawing.inline_svg import FixedInks, inline_svg
-from linkwork.drawing.position_marks import PositionMark
-from linkwork.drawing.scene import Scene
-from linkwork.foundation.own_files import OwnFiles
-from linkwork.foundation.paths import as_path
-from linkwork.foundation.written_file import save_bytes, save_text
-from linkwork.results.csv_text import csv_text
-from linkwork.textfile.writer import write_text
-from linkwork.viewer.designs_page import designs_page
+from linkwork.app.pages.designs_page import designs_page
+from linkwork.core.drawing.annotations import PositionMark, SceneOptions
+from linkwork.core.drawing.picture_file import render
+from linkwork.core.drawing.scene import Scene
+from linkwork.core.drawing.svg import FixedInks, inline_svg
+from linkwork.core.foundation.files import OwnFiles, as_path, save_bytes, save_text
+from linkwork.core.results.tables import csv_text
+from linkwork.core.textfile.writer import write_text
+from linkwork.synthesis.defects.verdicts import JudgedDesign
+from linkwork.synthesis.solvers.result import Synthesis, designs_table, front_of
+from linkwork.synthesis.tasks.task import Task
+from linkwork.writers.charts.circuits import front_chart
 
 __all__ = ["FolderOptions", "check_folder", "keeps_earlier", "write_designs"]
 

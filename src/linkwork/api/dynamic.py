@@ -7,20 +7,20 @@ from typing import TYPE_CHECKING, Self
 
 from linkwork import design
 from linkwork.api.loaded import LoadedMechanism
-from linkwork.foundation.errors import InputError
-from linkwork.mechanism.linkage import Linkage
+from linkwork.core.foundation.errors import InputError
+from linkwork.core.mechanism.linkage import Linkage
 
 if TYPE_CHECKING:
-    from linkwork.mechanism.dimensions import Number
-    from linkwork.mechanism.motor import Motor
-    from linkwork.results.machine_design import (
+    from linkwork.core.mechanism.dimensions import Number
+    from linkwork.core.mechanism.inputs import Motor
+    from linkwork.core.results.motion import Motion
+    from linkwork.design.results import (
         Counterweights,
         Flywheel,
         Harmonics,
         InflectionCircle,
         MotorCheck,
     )
-    from linkwork.results.motion import Motion
 
 __all__ = ["DynamicMechanism"]
 
@@ -34,7 +34,7 @@ class DynamicMechanism(LoadedMechanism):
 
     def flywheel(self, fluctuation: float, *, motion: Motion | None = None) -> Flywheel:
         """The inertia at the input for a fluctuation of its speed; see
-        :func:`linkwork.design.flywheel`.
+        :func:`linkwork.design.machine`.
 
         Parameters
         ----------

@@ -6,17 +6,16 @@ from collections.abc import Callable, Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from linkwork import exchange, export
+from linkwork import readers as exchange, writers as export
 from linkwork.api.designed import DesignedMechanism
-from linkwork.exchange.drawn import Exported
-from linkwork.foundation.errors import InputError
-from linkwork.foundation.paths import as_path
-from linkwork.foundation.value_types import check_flags, given_or
-from linkwork.foundation.written_file import save_bytes, save_text
-from linkwork.mechanism.linkage import Linkage
+from linkwork.core.foundation.errors import InputError
+from linkwork.core.foundation.files import as_path, save_bytes, save_text
+from linkwork.core.foundation.values import check_flags, given_or
+from linkwork.core.mechanism.linkage import Linkage
+from linkwork.readers.assembly import Exported
 
 if TYPE_CHECKING:
-    from linkwork.results.motion import Motion
+    from linkwork.core.results.motion import Motion
 
 __all__ = ["ExportedMechanism"]
 

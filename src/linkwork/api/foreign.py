@@ -8,15 +8,15 @@ from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
 
-from linkwork import exchange, textfile
+from linkwork import readers as exchange
 from linkwork.api.mechanism import Mechanism
-from linkwork.exchange.formats import carried
-from linkwork.exchange.source import LARGEST, LeftOut
-from linkwork.foundation.errors import InputError, MechanismError
-from linkwork.foundation.internal import internal
-from linkwork.foundation.paths import as_path
-from linkwork.foundation.plain_numbers import as_told
-from linkwork.mechanism.linkage import Linkage
+from linkwork.core import textfile
+from linkwork.core.foundation.errors import InputError, MechanismError, internal
+from linkwork.core.foundation.files import as_path
+from linkwork.core.foundation.values import as_told
+from linkwork.core.mechanism.linkage import Linkage
+from linkwork.readers.assembly import LARGEST, LeftOut
+from linkwork.readers.formats import carried
 
 __all__ = ["Imported", "imported"]
 

@@ -5,16 +5,15 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping, Sequence
 from typing import TYPE_CHECKING
 
-from linkwork import dynamics, forces
 from linkwork.api.solvable import SolvableMechanism
-from linkwork.foundation.errors import key_text
-from linkwork.mechanism.dimensions import Number
+from linkwork.core.foundation.errors import key_text
+from linkwork.core.mechanism.dimensions import Number
+from linkwork.forces import dynamics, reactions as forces
 
 if TYPE_CHECKING:
-    from linkwork.results.equilibrium import Equilibrium
-    from linkwork.results.motion import Motion
-    from linkwork.results.reactions import Reactions
-    from linkwork.results.stall import Stall
+    from linkwork.core.results.motion import Motion
+    from linkwork.forces.results import Equilibrium, Reactions
+    from linkwork.forces.stall import Stall
 
 __all__ = ["LoadedMechanism"]
 
@@ -39,7 +38,7 @@ class LoadedMechanism(SolvableMechanism):
 
         Without ``at`` over the input's table; of a structure in its position. With a speed of
         the input, masses have inertia; without one the mechanism is at rest. See
-        :mod:`linkwork.forces`.
+        :mod:`linkwork.forces.reactions`.
 
         Parameters
         ----------
@@ -117,7 +116,7 @@ class LoadedMechanism(SolvableMechanism):
         progress: Callable[[float], None] | None = None,
     ) -> Motion:
         """The motion in time under masses, loads, springs, a motor and stops; see
-        :mod:`linkwork.dynamics`.
+        :mod:`linkwork.forces.dynamics`.
 
         Inputs with a law follow it, the others are free: they start at ``at`` with
         ``start_speed``. Friction of joints takes the energy ``friction_work`` of the motion, and

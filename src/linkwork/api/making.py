@@ -6,15 +6,15 @@ import os
 from pathlib import Path
 from typing import Any
 
-from linkwork import textfile
 from linkwork.api.mechanism import Mechanism
-from linkwork.foundation.errors import InputError
-from linkwork.foundation.paths import as_path
-from linkwork.foundation.plain_numbers import as_told
-from linkwork.mechanism.field_types import made_of
-from linkwork.mechanism.linkage import Linkage
-from linkwork.mechanism.loops import Loops, PlainEquations
-from linkwork.textfile.library import example_text, examples
+from linkwork.core import textfile
+from linkwork.core.foundation.errors import InputError
+from linkwork.core.foundation.files import as_path
+from linkwork.core.foundation.values import as_told
+from linkwork.core.mechanism.description import made_of
+from linkwork.core.mechanism.linkage import Linkage
+from linkwork.core.mechanism.loops import Loops, PlainEquations
+from linkwork.core.textfile.reader import example_text, examples
 
 __all__ = ["example", "linkage", "load", "loads", "loops", "plain_equations"]
 

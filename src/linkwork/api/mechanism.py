@@ -7,20 +7,19 @@ from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from linkwork import batch, drawing, motion, textfile, viewer
+from linkwork import app as viewer, families as batch
 from linkwork.api import solving
 from linkwork.api.reported import ReportedMechanism
-from linkwork.foundation.errors import InputError
-from linkwork.foundation.internal import internal
-from linkwork.foundation.names import as_names
-from linkwork.foundation.paths import as_path
-from linkwork.foundation.value_types import given_or
-from linkwork.foundation.written_file import save_bytes
-from linkwork.results.force import Force
+from linkwork.core import drawing, motion, textfile
+from linkwork.core.foundation.errors import InputError, internal
+from linkwork.core.foundation.files import as_path, save_bytes
+from linkwork.core.foundation.names import as_names
+from linkwork.core.foundation.values import given_or
+from linkwork.forces.results import Force
 
 if TYPE_CHECKING:
-    from linkwork.results.motion import Motion
-    from linkwork.viewer.page_data import SolvingPage
+    from linkwork.app.pages.page_data import SolvingPage
+    from linkwork.core.results.motion import Motion
 
 __all__ = ["Mechanism"]
 
@@ -81,7 +80,7 @@ class Mechanism(ReportedMechanism):
         traces : sequence of str, optional
             The points whose paths are drawn; by default those of the file's ``[trace]``.
         options : SceneOptions, optional
-            Further contents; see :class:`linkwork.drawing.SceneOptions`.
+            Further contents; see :class:`linkwork.core.drawing.SceneOptions`.
         progress : callable, optional
             Called with the finished fraction of the cycle, 0 to 1.
 
@@ -253,7 +252,7 @@ class Mechanism(ReportedMechanism):
         -------
         anywidget.AnyWidget
             Its traits ``configuration`` and ``row`` select the displayed position and can be set;
-            see :func:`linkwork.viewer.motions_widget`.
+            see :func:`linkwork.app.motions_widget`.
 
         Raises
         ------

@@ -11,14 +11,17 @@ from typing import Self
 import numpy as np
 
 from linkwork.api.mechanism import Mechanism
-from linkwork.batch.study.store_packages import check_packages
-from linkwork.design.atlas import path_atlas
-from linkwork.design.atlas.placed_mechanism import placed_on_curve
-from linkwork.foundation.arrays import ComplexArray
-from linkwork.foundation.errors import InputError
-from linkwork.foundation.internal import internal
-from linkwork.foundation.paths import as_path
-from linkwork.foundation.plain_numbers import as_told, whole_number
+from linkwork.core.foundation.arrays import ComplexArray
+from linkwork.core.foundation.errors import InputError, internal
+from linkwork.core.foundation.files import as_path
+from linkwork.core.foundation.values import as_told, whole_number
+from linkwork.families.study.packages import check_packages
+from linkwork.synthesis.atlas.path_atlas import (
+    Nearest,
+    PathAtlas as path_atlas_PathAtlas,
+    placed_on_curve,
+    read_atlas,
+)
 
 __all__ = ["NearPath", "PathAtlas"]
 
@@ -52,7 +55,7 @@ class NearPath:
     """
 
     number: int
-    near: path_atlas.Nearest
+    near: Nearest
     curve: ComplexArray
 
     @property
@@ -99,13 +102,13 @@ class PathAtlas:
     5
     """
 
-    def __init__(self, atlas: path_atlas.PathAtlas) -> None:
+    def __init__(self, atlas: path_atlas_PathAtlas) -> None:
         self._atlas = atlas
 
     @classmethod
     def shipped(cls) -> Self:
         """The small atlas that is part of Linkwork."""
-        return cls(path_atlas.read_atlas())
+        return cls(read_atlas())
 
     @classmethod
     def load(cls, path: str | Path) -> Self:
@@ -116,7 +119,7 @@ class PathAtlas:
         InputError
             If it is no atlas.
         """
-        return cls(path_atlas.read_atlas(as_path(path)))
+        return cls(read_atlas(as_path(path)))
 
     @classmethod
     def of_stores(
@@ -137,7 +140,7 @@ class PathAtlas:
         """
         check_packages()
         # curves are compared without studies, which load Numba: a second
-        from linkwork.design.atlas.stored_paths import atlas_of_stores
+        from linkwork.synthesis.atlas.stored_paths import atlas_of_stores
 
         return cls(atlas_of_stores([as_path(store) for store in stores], progress))
 

@@ -2,17 +2,16 @@
 
 from __future__ import annotations
 
-from linkwork import drawing, forces, motion, viewer
-from linkwork.foundation.presenting import register_presenter
-from linkwork.motion.model import Model
-from linkwork.results.circuits import Circuits
-from linkwork.results.configurations import Configurations
-from linkwork.results.motion import Motion
-from linkwork.results.motion_summary import motion_text
-from linkwork.results.motion_table import table_of
-from linkwork.results.position import Position
-from linkwork.results.sensitivity import Sensitivity
-from linkwork.results.tolerance import Tolerance
+from linkwork import app as viewer
+from linkwork.circuits.results import Circuits, Configurations
+from linkwork.core import drawing, motion
+from linkwork.core.foundation.containers import register_presenter
+from linkwork.core.motion.model import Model
+from linkwork.core.results.motion import Motion
+from linkwork.core.results.motion_table import motion_text, table_of
+from linkwork.core.results.position import Position
+from linkwork.design.tolerance_results import Sensitivity, Tolerance
+from linkwork.forces import reactions as forces
 
 __all__ = ["register_presenters"]
 

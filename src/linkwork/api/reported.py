@@ -6,16 +6,16 @@ from collections.abc import Callable, Collection, Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, TypeVar
 
-from linkwork import export, motion, textfile
+from linkwork import writers as export
 from linkwork.api.exported import ExportedMechanism
-from linkwork.foundation.errors import InputError, UnknownNameError
-from linkwork.foundation.internal import internal
-from linkwork.foundation.paths import as_path
-from linkwork.results.reactions import ForceStatus
+from linkwork.core import motion, textfile
+from linkwork.core.foundation.errors import InputError, UnknownNameError, internal
+from linkwork.core.foundation.files import as_path
+from linkwork.forces.results import ForceStatus
 
 if TYPE_CHECKING:
-    from linkwork.results.motion import Motion
-    from linkwork.results.position import Position
+    from linkwork.core.results.motion import Motion
+    from linkwork.core.results.position import Position
 
 __all__ = ["ReportedMechanism"]
 

@@ -5,22 +5,21 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Mapping
 from typing import TYPE_CHECKING
 
-from linkwork import batch, motion
+from linkwork import families as batch
 from linkwork.api.described import DescribedMechanism
-from linkwork.foundation.errors import InputError
-from linkwork.foundation.internal import internal
-from linkwork.mechanism.dimensions import Number
-from linkwork.numerics.newton import NewtonOptions
-from linkwork.results.position import Position
+from linkwork.core import motion
+from linkwork.core.foundation.errors import InputError, internal
+from linkwork.core.mechanism.dimensions import Number
+from linkwork.core.numerics.newton import NewtonOptions
+from linkwork.core.results.position import Position
 
 if TYPE_CHECKING:
-    from linkwork.batch.family import Family
-    from linkwork.results.circuits import Circuits
-    from linkwork.results.configurations import Configurations
-    from linkwork.results.iterates import Iterates
-    from linkwork.results.motion import Motion
-    from linkwork.results.nearest_assembly import NearestAssembly
-    from linkwork.results.vector_loop import MovingLoop
+    from linkwork.circuits.results import Circuits, Configurations
+    from linkwork.core.results.motion import Motion
+    from linkwork.core.results.nearest_assembly import NearestAssembly
+    from linkwork.core.results.position import Iterates
+    from linkwork.core.results.vector_loop import MovingLoop
+    from linkwork.families.family import Family
 
 __all__ = ["SolvableMechanism"]
 
@@ -178,7 +177,7 @@ class SolvableMechanism(DescribedMechanism):
 
         It is many times faster than :meth:`sweep`: Newton-Raphson starts from the positions of the
         neighbour, at all rows together. If that is not safe, the branch is followed again; see
-        :func:`linkwork.motion.warm_started`.
+        :func:`linkwork.core.motion.warm_started`.
 
         Parameters
         ----------
@@ -197,7 +196,7 @@ class SolvableMechanism(DescribedMechanism):
     def nearest_assembly(self, at: float | Mapping[str, float] | None = None) -> NearestAssembly:
         """The position nearest to closure, for a mechanism that does not close.
 
-        See :func:`linkwork.motion.nearest_assembly`.
+        See :func:`linkwork.core.motion.nearest_assembly`.
 
         Parameters
         ----------
@@ -213,7 +212,7 @@ class SolvableMechanism(DescribedMechanism):
         *,
         options: NewtonOptions | None = None,
     ) -> Iterates:
-        """The iterates of Newton-Raphson from a guess; see :func:`linkwork.motion.iterates`.
+        """The iterates of Newton-Raphson from a guess; see :func:`linkwork.core.motion.iterates`.
 
         Parameters
         ----------
@@ -245,7 +244,7 @@ class SolvableMechanism(DescribedMechanism):
         at: float | Mapping[str, float] | None = None,
     ) -> dict[str, float]:
         """A guess that brings a point near given coordinates; see
-        :func:`linkwork.motion.pulled_guess`.
+        :func:`linkwork.core.motion.pulled_guess`.
 
         Parameters
         ----------
@@ -260,7 +259,7 @@ class SolvableMechanism(DescribedMechanism):
         """All assembly configurations at one input value, each with its certificate.
 
         Blocks of one loop are solved in closed form, larger blocks by homotopy continuation; see
-        :func:`linkwork.motion.configurations`.
+        :func:`linkwork.core.motion.configurations`.
 
         Parameters
         ----------
@@ -290,7 +289,7 @@ class SolvableMechanism(DescribedMechanism):
     def circuits(
         self, *, certify: bool = True, progress: Callable[[float], None] | None = None
     ) -> Circuits:
-        """All circuits with their branches; see :func:`linkwork.motion.circuits`.
+        """All circuits with their branches; see :func:`linkwork.core.motion.circuits`.
 
         Parameters
         ----------
@@ -320,13 +319,13 @@ class SolvableMechanism(DescribedMechanism):
         return motion.circuits(self.model, certify=certify, progress=progress)
 
     def family(self, dimensions: Mapping[str, object]) -> Family:
-        """Many designs of the mechanism, solved together; see :func:`linkwork.batch.designs_of`.
+        """Many designs of the mechanism, solved together; see :func:`linkwork.families.designs_of`.
 
         Parameters
         ----------
         dimensions : Mapping[str, number or array (D,)]
             The varied numbers in file units: dimensions, lengths (``"O2 A"``), angles, coordinates
-            (``"O4.x"``); or a plan of :mod:`linkwork.batch`.
+            (``"O4.x"``); or a plan of :mod:`linkwork.families`.
 
         Returns
         -------

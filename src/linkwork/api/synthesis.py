@@ -11,15 +11,15 @@ import numpy as np
 
 from linkwork.api.designs_folder import FolderOptions, write_designs
 from linkwork.api.mechanism import Mechanism
-from linkwork.design.defects.by_circuits import defects_by_circuits
-from linkwork.design.defects.defect_messages import Defect
-from linkwork.design.synthesis import result
-from linkwork.design.synthesis.designs_table import designs_table
-from linkwork.design.synthesis.solving import solve_task
-from linkwork.design.tasks import task, task_file
-from linkwork.foundation.errors import InputError, MechanismError
-from linkwork.foundation.plain_numbers import finite_number
-from linkwork.results.table import Table
+from linkwork.core.foundation.errors import InputError, MechanismError
+from linkwork.core.foundation.values import finite_number
+from linkwork.core.results.tables import Table
+from linkwork.synthesis.defects.by_circuits import defects_by_circuits
+from linkwork.synthesis.defects.verdicts import Defect
+from linkwork.synthesis.solvers.result import Synthesis as result_Synthesis, designs_table
+from linkwork.synthesis.solvers.solving import solve_task
+from linkwork.synthesis.tasks import task_file
+from linkwork.synthesis.tasks.task import Task as task_Task
 
 __all__ = ["Synthesis", "Task"]
 
@@ -38,7 +38,7 @@ class Task:
     2
     """
 
-    def __init__(self, described: task.Task, name: str = "the task") -> None:
+    def __init__(self, described: task_Task, name: str = "the task") -> None:
         self.described = described
         self._name = name
 
@@ -205,7 +205,7 @@ def _positions(given: Any) -> list[dict[str, Any]]:
 
 
 @dataclass(frozen=True, kw_only=True, eq=False, repr=False)
-class Synthesis(result.Synthesis):
+class Synthesis(result_Synthesis):
     """All designs for a task, sound ones first.
 
     Attributes are those of a report: ``complex``, ``real`` and ``proved`` count solutions,

@@ -7,8 +7,8 @@ from collections.abc import Collection, Iterator, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 
-from linkwork.design.tasks.task import Task
-from linkwork.textfile.text_edits import TextEdits
+from linkwork.core.textfile.text_edits import TextEdits
+from linkwork.synthesis.tasks.task import Task
 
 __all__ = ["REFUSED", "TaskCopy", "task_copy"]
 

@@ -4,22 +4,19 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from linkwork.foundation.lazy import loader
+from linkwork.core.foundation.loading import loader
 
 if TYPE_CHECKING:
     from linkwork.design.counterweights import (
         balanced as balanced,
         counterweights as counterweights,
     )
-    from linkwork.design.flywheel import flywheel as flywheel
-    from linkwork.design.harmonic_analysis import harmonics as harmonics
-    from linkwork.design.improvement.improving import improved_designs as improved_designs
-    from linkwork.design.improvement.settings import (
-        Improvement as Improvement,
-        read_goal as read_goal,
+    from linkwork.design.machine import (
+        flywheel as flywheel,
+        harmonics as harmonics,
+        inflection_circle as inflection_circle,
+        motor_check as motor_check,
     )
-    from linkwork.design.inflection import inflection_circle as inflection_circle
-    from linkwork.design.motor_check import motor_check as motor_check
     from linkwork.design.sensitivity import (
         is_of_motion as is_of_motion,
         sensitivity_of_motion as sensitivity_of_motion,
@@ -29,6 +26,11 @@ if TYPE_CHECKING:
     from linkwork.design.tolerance import (
         deviations as deviations,
         tolerance_of as tolerance_of,
+    )
+    from linkwork.synthesis.improvement.improving import improved_designs as improved_designs
+    from linkwork.synthesis.improvement.settings import (
+        Improvement as Improvement,
+        read_goal as read_goal,
     )
 else:
     __getattr__ = loader(__name__)

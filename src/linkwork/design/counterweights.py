@@ -12,14 +12,14 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from linkwork import motion
-from linkwork.forces import forces_of_motion
-from linkwork.foundation.errors import InputError
-from linkwork.foundation.frozen import FrozenDict
-from linkwork.foundation.names import GROUND
-from linkwork.mechanism.linkage import Linkage
-from linkwork.mechanism.mass import Mass
-from linkwork.results.machine_design import Counterweight, Counterweights
+from linkwork.core import motion
+from linkwork.core.foundation.containers import FrozenDict
+from linkwork.core.foundation.errors import InputError
+from linkwork.core.foundation.names import GROUND
+from linkwork.core.mechanism.linkage import Linkage
+from linkwork.core.mechanism.machine import Mass
+from linkwork.design.results import Counterweight, Counterweights
+from linkwork.forces.reactions.solving import forces_of_motion
 
 __all__ = ["balanced", "counterweights"]
 

@@ -8,21 +8,25 @@ from typing import Any, cast
 
 import numpy as np
 
-from linkwork.design.derivatives.differentiable_numbers import chosen_numbers, groups_of
-from linkwork.design.derivatives.differentiated_folds import DifferentiatedFolds
-from linkwork.design.derivatives.differentiated_forces import LoadedRows
-from linkwork.design.derivatives.differentiated_rows import DifferentiatedRows
-from linkwork.design.derivatives.regular_rows import RegularRows, row_of, rows_of
-from linkwork.foundation.arrays import AnyArray, Array
-from linkwork.foundation.errors import InputError, UnknownNameError
-from linkwork.mechanism.varied_number import VariedNumber
-from linkwork.motion.leading_input import leading_input
-from linkwork.motion.model import Model
-from linkwork.results.motion import LimitKind, Motion
-from linkwork.results.position import Position
-from linkwork.results.quantities.asked import Asked, AskedOfMotion, Group
-from linkwork.results.quantities.definition import RowSlopes
-from linkwork.results.sensitivity import Sensitivity, SensitivityStatus
+from linkwork.core.foundation.arrays import AnyArray, Array
+from linkwork.core.foundation.errors import InputError, UnknownNameError
+from linkwork.core.mechanism.varied_numbers import VariedNumber
+from linkwork.core.motion.model import Model, leading_input
+from linkwork.core.results.limit import LimitKind
+from linkwork.core.results.motion import Motion
+from linkwork.core.results.position import Position
+from linkwork.core.results.quantities.definition import Asked, AskedOfMotion, Group, RowSlopes
+from linkwork.design.derivatives.forces import LoadedRows
+from linkwork.design.derivatives.rows import (
+    DifferentiatedFolds,
+    DifferentiatedRows,
+    RegularRows,
+    chosen_numbers,
+    groups_of,
+    row_of,
+    rows_of,
+)
+from linkwork.design.tolerance_results import Sensitivity, SensitivityStatus
 
 __all__ = [
     "LIMITS",

@@ -8,8 +8,22 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from linkwork import batch
-from linkwork.batch.sampling import Normal, random
+from linkwork import families as batch
+from linkwork.core.foundation.arrays import Array
+from linkwork.core.foundation.errors import InputError, UnknownNameError, choices
+from linkwork.core.foundation.names import find_spelling
+from linkwork.core.foundation.units import FULL_TURN
+from linkwork.core.foundation.values import finite_number, whole_number
+from linkwork.core.mechanism.varied_numbers import (
+    VariedNumber,
+    clearances_of,
+    deviations_of,
+    number_named,
+    pins_of,
+)
+from linkwork.core.motion.model import Model, model_of
+from linkwork.core.results.motion import Motion
+from linkwork.core.results.position import Position
 from linkwork.design.sensitivity import (
     LIMITS,
     play_of_motion,
@@ -17,18 +31,15 @@ from linkwork.design.sensitivity import (
     sensitivity_of_motion,
     sensitivity_of_position,
 )
-from linkwork.foundation.angles import FULL_TURN
-from linkwork.foundation.arrays import Array
-from linkwork.foundation.errors import InputError, UnknownNameError, choices
-from linkwork.foundation.names import find_spelling
-from linkwork.foundation.plain_numbers import finite_number, whole_number
-from linkwork.mechanism.tolerances import clearances_of, deviations_of, pins_of
-from linkwork.mechanism.varied_number import VariedNumber, number_named
-from linkwork.motion.model import Model, model_of
-from linkwork.results.motion import Motion
-from linkwork.results.position import Position
-from linkwork.results.sensitivity import Sensitivity, SensitivityStatus, per
-from linkwork.results.tolerance import Contribution, Sampled, Tolerance
+from linkwork.design.tolerance_results import (
+    Contribution,
+    Sampled,
+    Sensitivity,
+    SensitivityStatus,
+    Tolerance,
+    per,
+)
+from linkwork.families.sampling import Normal, random
 
 __all__ = ["Deviations", "deviations", "tolerance_of"]
 

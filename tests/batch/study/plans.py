@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from pathlib import Path
 
-from linkwork.batch.study import Study, read_plan_text
+from linkwork.families.study import Study, read_plan_text
 
 __all__ = ["PLAN", "contents", "edited", "study"]
 

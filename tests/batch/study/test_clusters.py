@@ -13,9 +13,9 @@ from pathlib import Path
 
 import pytest
 
-from linkwork.batch.study import run_study
-from linkwork.batch.study.cluster import cluster_crew
-from linkwork.foundation.errors import InputError, MissingPackageError
+from linkwork.core.foundation.errors import InputError, MissingPackageError
+from linkwork.families.study import run_study
+from linkwork.families.study.running import cluster_crew
 from tests.batch.study.plans import contents, edited, study
 
 pytestmark = pytest.mark.extended
@@ -106,7 +106,7 @@ def test_without_zarr_the_command_is_said_that_installs_it(
 
 @pytest.mark.filterwarnings("ignore")  # whatever Dask leaves behind when nobody answers
 def test_a_scheduler_that_does_not_answer_is_told(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("linkwork.batch.study.cluster._PATIENCE", 0.2)
+    monkeypatch.setattr("linkwork.families.study.running._CLUSTER_PATIENCE", 0.2)
     with pytest.raises(InputError) as caught:
         next(cluster_crew(study().job, iter(()), "tcp://127.0.0.1:9"))
     assert str(caught.value).startswith("no Dask scheduler answers at tcp://127.0.0.1:9 (")
@@ -117,7 +117,7 @@ def test_dask_is_loaded_only_for_a_cluster(tmp_path: Path) -> None:
     (tmp_path / "plan.toml").write_text(edited(("count = 300", "count = 64")), encoding="utf-8")
     program = (
         "import sys\n"
-        "from linkwork.cli.main import linkwork\n"
+        "from linkwork.core.commands.main import linkwork\n"
         "linkwork(['study', 'plan.toml', '-o', 'out.zarr'], standalone_mode=False)\n"
         "print('distributed' in sys.modules, file=sys.stderr)\n"
     )

@@ -13,16 +13,22 @@ import jsonschema
 import numpy as np
 import pytest
 
-from linkwork.batch import Plan, from_table, grid, latin_hypercube, random
-from linkwork.batch.sampling import CHUNK, Normal
-from linkwork.batch.study import read_plan, read_plan_text
-from linkwork.batch.study.choosing import Choice, Triangular, values_between
-from linkwork.batch.study.measures import Comparison, Word, read_condition
-from linkwork.batch.study.plan_keys import PLAN as FORM
-from linkwork.batch.study.study import usual_chunk
-from linkwork.foundation.errors import InputError, MechanismFileError
-from linkwork.results.quantities.registry import Call
-from linkwork.textfile import schema_of, schema_text
+from linkwork.core.foundation.errors import InputError, MechanismFileError
+from linkwork.core.results.quantities.registry import Call
+from linkwork.core.textfile import schema_of, schema_text
+from linkwork.families import Plan, from_table, grid, latin_hypercube, random
+from linkwork.families.sampling import CHUNK, Normal
+from linkwork.families.study import read_plan, read_plan_text
+from linkwork.families.study.plan_keys import PLAN as FORM
+from linkwork.families.study.study import (
+    Choice,
+    Comparison,
+    Triangular,
+    Word,
+    read_condition,
+    usual_chunk,
+    values_between,
+)
 from tests.batch.study.plans import PLAN, edited, study
 
 VALIDATOR = jsonschema.Draft202012Validator(schema_of(FORM))
@@ -215,7 +221,7 @@ def test_problems_of_the_mechanism_are_said_with_its_own_lines(tmp_path: Path) -
 
 
 def test_the_published_schema_is_that_of_the_reader() -> None:
-    published = files("linkwork.batch.study").joinpath("plan.schema.json")
+    published = files("linkwork.families.study").joinpath("plan.schema.json")
     assert published.read_text(encoding="utf-8") == schema_text(schema_of(FORM))
     jsonschema.Draft202012Validator.check_schema(schema_of(FORM))
 

@@ -22,13 +22,13 @@ import xarray
 from click.testing import CliRunner
 
 import linkwork as lw
-from linkwork.batch import Family
-from linkwork.batch.family_motion import FamilyMotion
-from linkwork.batch.study import Summary, run_study, summary_of, verify_store, workers
-from linkwork.batch.study.job import Job, compute_part
-from linkwork.cli.main import linkwork
-from linkwork.foundation.errors import InputError
-from linkwork.foundation.status import Status
+from linkwork.core.commands.main import linkwork
+from linkwork.core.foundation.errors import InputError
+from linkwork.core.foundation.statuses import Status
+from linkwork.families import Family
+from linkwork.families.family_motion import FamilyMotion
+from linkwork.families.study import Summary, run_study, running as workers, summary_of, verify_store
+from linkwork.families.study.study import Job, compute_part
 from tests.batch.study.plans import PLAN, contents, edited, study
 from tests.interruptible import interruptible
 
@@ -123,7 +123,7 @@ def test_chunks_may_come_in_any_order(
         for k, values in reversed(list(tasks)):
             yield k, compute_part(job, values)
 
-    monkeypatch.setattr("linkwork.batch.study.running.one_after_the_other", backwards)
+    monkeypatch.setattr("linkwork.families.study.running.one_after_the_other", backwards)
     run_study(study(), tmp_path / "out.zarr", workers=1)
     assert contents(tmp_path / "out.zarr") == contents(whole)
 
@@ -154,7 +154,7 @@ def test_a_run_killed_at_any_write_goes_on_to_the_same_store(
         replace(old, new)
 
     monkeypatch.setattr(Path, "write_bytes", torn)
-    monkeypatch.setattr("linkwork.batch.study.chunk_manifest.os.replace", renamed)
+    monkeypatch.setattr("linkwork.families.study.store.os.replace", renamed)
     store = tmp_path / "out.zarr"
     deaths = 0
     for at in range(1, 10_000):
@@ -317,7 +317,7 @@ def test_workers_that_die_again_and_again_end_the_run(
 def test_a_worker_of_another_version_refuses(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr("linkwork.batch.study.plan_file.linkwork_version", lambda: "7.8.9")
+    monkeypatch.setattr("linkwork.families.study.study.linkwork_version", lambda: "7.8.9")
     with pytest.raises(InputError, match=r"^the study was started with Linkwork 7\.8\.9, a worker"):
         run_study(study(*FEW), tmp_path / "out.zarr", workers=2)
 
@@ -337,7 +337,7 @@ def test_the_device_of_a_plan_computes_its_designs(
         return sweep(self, **options)
 
     monkeypatch.setattr(Family, "sweep", noted)
-    monkeypatch.setattr("linkwork.batch.study.running.graphics_card", lambda: None)
+    monkeypatch.setattr("linkwork.families.gpu.kernel.graphics_card", lambda: None)
     run_study(plan, tmp_path / "out.zarr")  # in this process: a card serves one
     assert asked == ["gpu"] * plan.chunks
     with pytest.raises(InputError, match="device"):
@@ -405,7 +405,7 @@ def test_a_store_that_is_killed_while_it_is_taken_away_is_there_or_not(
     store = tmp_path / "out.zarr"
     run_study(study(*FEW), store, workers=1)
     with monkeypatch.context() as patch:
-        patch.setattr("linkwork.batch.study.store.shutil.rmtree", killed)
+        patch.setattr("linkwork.families.study.store.shutil.rmtree", killed)
         with pytest.raises(Killed):
             run_study(study(*FEW), store, workers=1, force=True)
     run_study(study(), store, workers=1)

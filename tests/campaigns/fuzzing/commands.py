@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 from click.testing import CliRunner
 
-from linkwork.cli.main import linkwork as program
+from linkwork.core.commands.main import linkwork as program
 from tests.campaigns.fuzzing.loads import LOADED
 from tests.campaigns.fuzzing.odd import NAMES, NUMBERS, pick
 from tests.campaigns.fuzzing.pages import BENCH, BENCH_NAMES, BENCH_TEXTS

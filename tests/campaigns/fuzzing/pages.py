@@ -13,13 +13,13 @@ from typing import Any
 import numpy as np
 
 import linkwork as lw
-from linkwork.design.synthesis.solving import solve_task
-from linkwork.mechanism.part.index import PARTS
-from linkwork.viewer.live.bench import Bench
-from linkwork.viewer.live.events import ProblemsFound, Refused
-from linkwork.viewer.live.mechanism_file import MechanismFile, blank_sheet
-from linkwork.viewer.live.messages import decoded, encoded, kind_of
-from linkwork.viewer.live.requests import REQUESTS, Picked, Simulate
+from linkwork.app.live.bench import Bench
+from linkwork.app.live.events import ProblemsFound, Refused
+from linkwork.app.live.mechanism_file import MechanismFile, blank_sheet
+from linkwork.app.live.messages import decoded, encoded, kind_of
+from linkwork.app.live.requests import REQUESTS, Picked, Simulate
+from linkwork.core.mechanism.part.index import PARTS
+from linkwork.synthesis.solvers.solving import solve_task
 from tests.campaigns.fuzzing.loads import LOADED, loaded_text, names_in
 from tests.campaigns.fuzzing.odd import FORMULAS, NAMES, NUMBERS, pick
 from tests.campaigns.fuzzing.texts import changed_bytes, changed_text, library_text, task_text

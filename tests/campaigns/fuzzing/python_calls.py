@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 
 import linkwork as lw
-from linkwork import batch
+from linkwork import families as batch
 from tests.campaigns.fuzzing.loads import LOADED
 from tests.campaigns.fuzzing.odd import OBJECTS, pick
 from tests.campaigns.fuzzing.witness import Witness

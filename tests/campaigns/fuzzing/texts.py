@@ -8,7 +8,7 @@ from collections.abc import Callable
 
 import numpy as np
 
-from linkwork.textfile.library import example_text, examples
+from linkwork.core.textfile.reader import example_text, examples
 from tests.campaigns.fuzzing.odd import FORMULAS, NAMES, NUMBERS, pick
 
 __all__ = [

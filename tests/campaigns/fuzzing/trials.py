@@ -10,7 +10,7 @@ from pathlib import Path
 import numpy as np
 
 import linkwork as lw
-from linkwork.batch.study import read_plan, run_study
+from linkwork.families.study import read_plan, run_study
 from tests.campaigns.fuzzing.commands import command
 from tests.campaigns.fuzzing.loads import LOADED, loaded_text
 from tests.campaigns.fuzzing.odd import pick

@@ -9,7 +9,7 @@ from collections.abc import Callable
 from time import process_time
 from typing import TypeVar
 
-from linkwork.foundation.errors import LinkworkError
+from linkwork.core.foundation.errors import LinkworkError
 
 __all__ = ["LIMIT", "SHOWS_PROGRESS", "TooLongError", "Witness"]
 

@@ -12,20 +12,22 @@ import pytest
 from click.testing import CliRunner
 
 import linkwork as lw
-from linkwork.batch.study import read_plan_text, run_study
-from linkwork.cli.main import linkwork
-from linkwork.design.atlas.path_atlas import (
+from linkwork.core.commands.main import linkwork
+from linkwork.core.foundation.arrays import Array, ComplexArray
+from linkwork.core.textfile.reader import example_text
+from linkwork.families.study import read_plan_text, run_study
+from linkwork.synthesis.atlas.path_atlas import (
     SHIPPED,
     AtlasFamily,
     Nearest,
     PathAtlas,
+    coefficients,
+    distances,
+    in_ways,
+    placed_on_curve,
     read_atlas,
 )
-from linkwork.design.atlas.path_shape import coefficients, distances, in_ways
-from linkwork.design.atlas.placed_mechanism import placed_on_curve
-from linkwork.design.atlas.stored_paths import atlas_of_stores
-from linkwork.foundation.arrays import Array, ComplexArray
-from linkwork.textfile.library import example_text
+from linkwork.synthesis.atlas.stored_paths import atlas_of_stores
 
 _PLANS = Path(__file__).parents[3] / "examples" / "atlas"
 _ANGLES = np.linspace(0.0, 2.0 * np.pi, 180, endpoint=False)

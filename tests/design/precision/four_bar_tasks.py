@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import numpy as np
 
-from linkwork.design.precision.positions import PrecisionPositions
-from linkwork.design.precision.solving import PrecisionFourBars
-from linkwork.foundation.arrays import Array, ComplexArray
+from linkwork.core.foundation.arrays import Array, ComplexArray
+from linkwork.synthesis.precision.positions import PrecisionPositions
+from linkwork.synthesis.precision.solving import PrecisionFourBars
 
 #: Problem 3 of Wampler, Morgan, Sommese 1992; numbers as in the README of TOMS algorithm 921.
 PROBLEM_3 = np.array([

@@ -10,19 +10,23 @@ import pytest
 
 import linkwork as lw
 from linkwork import Completeness
-from linkwork.design.precision.linkage_proof import prove_linkages
-from linkwork.design.precision.path_tracking import (
+from linkwork.circuits.homotopy.path_tracking import (
+    LOST,
+    QUICK,
+    ParameterPath,
+    Paths,
+    track,
+)
+from linkwork.synthesis.precision.problem import PrecisionProblem, ProductSums
+from linkwork.synthesis.precision.proofs import prove_linkages
+from linkwork.synthesis.precision.sampling import positions_with_samples
+from linkwork.synthesis.precision.solving import (
     CompiledTracker,
+    PrecisionFourBars,
     SparingTracker,
     compiled_pays,
+    four_bars_through,
 )
-from linkwork.design.precision.problem import PrecisionProblem
-from linkwork.design.precision.product_sums import ProductSums
-from linkwork.design.precision.sampling import positions_with_samples
-from linkwork.design.precision.solving import PrecisionFourBars, four_bars_through
-from linkwork.marching.solution_path import LOST
-from linkwork.numerics.homotopy.parameter_path import QUICK, ParameterPath, track_in_batches
-from linkwork.numerics.homotopy.path_tracking import Paths
 from tests.design.precision.four_bar_tasks import (
     GROUND,
     LINE,
@@ -65,7 +69,7 @@ def mixed(poses: list[int], points: list[int]) -> tuple[np.ndarray, np.ndarray, 
 def test_four_poses_and_two_points() -> None:
     """The first position may be a point."""
     crank, points, angles = mixed([1, 2, 4, 5], [0, 3])
-    found = four_bars_through(positions(points, angles), track_in_batches)
+    found = four_bars_through(positions(points, angles), track)
     assert (len(found.roots.x), found.roots.paths, found.roots.lost) == (30, 30, 0)
     assert found.completeness is Completeness.WITH_PROBABILITY_ONE
     assert found.proved.all()
@@ -76,7 +80,7 @@ def test_four_poses_and_two_points() -> None:
 
 def test_two_poses_with_both_pivots_given() -> None:
     crank, points, angles = mixed([0, 3], [1, 5])
-    found = four_bars_through(positions(points, angles, 0.0, GROUND), track_in_batches)
+    found = four_bars_through(positions(points, angles, 0.0, GROUND), track)
     assert (found.roots.paths, found.completeness.complete) == (6, True)
     assert found.fixed_a == pytest.approx(np.zeros(len(found)))
     assert holds_original(found, crank)
@@ -85,7 +89,7 @@ def test_two_poses_with_both_pivots_given() -> None:
 
 def test_five_points_on_a_line_with_both_pivots_given() -> None:
     """33 of 36 solutions are finite, 15 of them real."""
-    found = four_bars_through(positions(LINE, None, 0.0, 1.0), track_in_batches)
+    found = four_bars_through(positions(LINE, None, 0.0, 1.0), track)
     roots = found.roots
     assert (roots.paths, len(roots.x), roots.at_infinity, roots.lost) == (36, 33, 3, 0)
     assert (roots.lost_paths, replace(roots, lost=2, at_infinity=1).lost_paths) == (
@@ -105,7 +109,7 @@ def test_five_points_on_a_line_with_both_pivots_given() -> None:
 
 def test_nothing_is_proved_of_a_linkage_that_misses_a_point() -> None:
     task = positions(LINE, None, 0.0, 1.0)
-    found = four_bars_through(task, track_in_batches)
+    found = four_bars_through(task, track)
     x = found.moving_a[:, 0] - LINE[0]
     y = found.moving_b[:, 0] - LINE[0]
     legs = [x, 0.0 - LINE[0] + 0 * x, y, 1.0 - LINE[0] + 0 * x]
@@ -117,8 +121,8 @@ def test_nothing_is_proved_of_a_linkage_that_misses_a_point() -> None:
 
 
 def test_a_task_without_real_solutions_has_an_empty_list(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("linkwork.design.precision.solving.ALMOST_REAL", 0.0)
-    found = four_bars_through(positions(LINE, None, 0.0, 1.0), track_in_batches)
+    monkeypatch.setattr("linkwork.core.foundation.rounding.ALMOST_REAL", 0.0)
+    found = four_bars_through(positions(LINE, None, 0.0, 1.0), track)
     assert (len(found), found.real, found.roots.complete) == (0, 0, True)
     assert found.moving_a.shape == found.guided.shape == (0, 5)
     assert found.lengths.shape == (0, 4)
@@ -146,7 +150,7 @@ def test_freedoms_that_positions_leave_are_drawn() -> None:
     assert [(len(p.pivots), len(p.points), p.wanted) for p in drawn] == [(2, 4, 4)] * 3
     total = 0
     for task in drawn:
-        found = four_bars_through(task, track_in_batches)
+        found = four_bars_through(task, track)
         total += len(found)
         assert found.guided.shape == (len(found), 4)
         assert passes(found, points) < 1e-10
@@ -177,7 +181,7 @@ def test_wrong_tasks_are_refused(
         list(positions_with_samples(*given, 1, np.random.default_rng(1)))
 
 
-_MODULE = "linkwork.design.precision.path_tracking"
+_MODULE = "linkwork.synthesis.precision.solving"
 
 
 def test_few_paths_need_no_compiler(monkeypatch: pytest.MonkeyPatch) -> None:

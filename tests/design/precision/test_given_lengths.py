@@ -12,17 +12,23 @@ import pytest
 
 import linkwork as lw
 from linkwork import Completeness
-from linkwork.design.precision import own_start_sets
-from linkwork.design.precision.own_start_sets import own_member
-from linkwork.design.precision.path_tracking import SparingTracker
-from linkwork.design.precision.positions import GivenLength, PrecisionPositions
-from linkwork.design.precision.problem import PrecisionProblem
-from linkwork.design.precision.solving import PrecisionFourBars, four_bars_through
-from linkwork.foundation.arrays import Array, ComplexArray
-from linkwork.numerics.homotopy.confirmed_member import solve_and_confirm
-from linkwork.numerics.homotopy.monodromy import Member, solve_by_few
-from linkwork.numerics.homotopy.parameter_roots import roots_at
-from linkwork.numerics.homotopy.trace_test import trace_defect
+from linkwork.circuits.homotopy.monodromy import (
+    Member,
+    solve_and_confirm,
+    solve_by_few,
+    trace_defect,
+)
+from linkwork.circuits.homotopy.parameter_roots import roots_at
+from linkwork.core.foundation.arrays import Array, ComplexArray
+from linkwork.synthesis.precision import given_lengths as own_start_sets
+from linkwork.synthesis.precision.given_lengths import own_member
+from linkwork.synthesis.precision.positions import GivenLength, PrecisionPositions
+from linkwork.synthesis.precision.problem import PrecisionProblem
+from linkwork.synthesis.precision.solving import (
+    PrecisionFourBars,
+    SparingTracker,
+    four_bars_through,
+)
 from tests.design.precision.four_bar_tasks import GROUND, four_bar_points, passes
 
 _NAMES = ("A0", "B0", "A", "B", "P")

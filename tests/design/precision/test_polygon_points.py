@@ -6,10 +6,9 @@ import numpy as np
 import pytest
 
 import linkwork as lw
-from linkwork.design.poses.pose_families import spread_pivots
-from linkwork.design.precision.polygon_points import points_in_polygon
-from linkwork.design.precision.sampling import positions_with_samples
-from linkwork.design.tasks.wishes import Wishes
+from linkwork.synthesis.poses.pose_families import spread_pivots
+from linkwork.synthesis.precision.sampling import points_in_polygon, positions_with_samples
+from linkwork.synthesis.tasks.conditions import Wishes
 
 # an L, a triangle without level sides, a narrow diagonal strip, two prongs
 _POLYGONS = [

@@ -8,12 +8,11 @@ import numpy as np
 import pytest
 
 import linkwork as lw
-from linkwork.design.precision import start_sets
-from linkwork.design.precision.cognates import cognates, exchange_legs
-from linkwork.design.precision.problem import PrecisionProblem
-from linkwork.design.precision.start_sets import SHIPPED_PROBLEMS, start_member
-from linkwork.numerics.homotopy.bilinear_homotopy import normal_numbers
-from linkwork.numerics.homotopy.parameter_path import ParameterPath
+from linkwork.circuits.homotopy.bilinear_homotopy import normal_numbers
+from linkwork.circuits.homotopy.path_tracking import ParameterPath
+from linkwork.synthesis.precision import solving as start_sets
+from linkwork.synthesis.precision.problem import PrecisionProblem, cognates, exchange_legs
+from linkwork.synthesis.precision.solving import SHIPPED_PROBLEMS, start_member
 
 #: Solutions of a random member: Brake, Hauenstein, Murray, Myszka, Wampler 2016 for all positions,
 #: Morgan and Wampler 1990 for given pivots; confirmed by ``scripts/start_linkages``.

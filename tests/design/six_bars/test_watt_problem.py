@@ -5,9 +5,9 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from linkwork.design.six_bars.watt_problem import WATT, bell_crank_turns
-from linkwork.numerics.homotopy.bilinear_homotopy import normal_numbers
-from linkwork.numerics.homotopy.parameter_path import ParameterPath
+from linkwork.circuits.homotopy.bilinear_homotopy import normal_numbers
+from linkwork.circuits.homotopy.path_tracking import ParameterPath
+from linkwork.synthesis.six_bars.watt import WATT, bell_crank_turns
 
 
 def test_derivatives_are_those_of_the_equations() -> None:

@@ -6,12 +6,10 @@ import numpy as np
 import pytest
 
 import linkwork as lw
-from linkwork.design.six_bars import start_member
-from linkwork.design.six_bars.watt_problem import WATT
-from linkwork.design.six_bars.watt_proof import prove_six_bars
-from linkwork.design.six_bars.watt_six_bars import watt_six_bars
-from linkwork.foundation.arrays import Array
-from linkwork.numerics.homotopy.parameter_path import track_in_batches
+from linkwork.circuits.homotopy.path_tracking import track
+from linkwork.core.foundation.arrays import Array
+from linkwork.synthesis.six_bars import watt as start_member
+from linkwork.synthesis.six_bars.watt import WATT, prove_six_bars, watt_six_bars
 from tests.design.six_bars.six_bars import ARMS, chebyshev, member_of, turned
 
 INPUTS: Array = 0.5 * np.pi * chebyshev()
@@ -25,7 +23,7 @@ def test_the_start_set_has_as_many_solutions_as_two_members_have() -> None:
 
 def test_a_path_leads_to_a_proved_six_bar_that_follows_the_logarithm_exactly() -> None:
     member = member_of(ARMS, INPUTS)
-    found = watt_six_bars(INPUTS, LOGARITHM, track_in_batches, member=member)
+    found = watt_six_bars(INPUTS, LOGARITHM, track, member=member)
     assert len(found) == 1
     assert found.proved.all()
     assert found.error[0] < 1e-12

@@ -11,15 +11,13 @@ import numpy as np
 import pytest
 
 import linkwork as lw
-from linkwork.design.loops.travel import Range
-from linkwork.design.six_bars import watt_six_bars
-from linkwork.design.six_bars.watt_six_bars import WattSixBars
-from linkwork.design.synthesis.watt_design import WattDesign
-from linkwork.design.synthesis.watt_linkage import driven_range
-from linkwork.design.synthesis.watt_synthesis import _completeness, _nine_pairs
-from linkwork.design.tasks.function_goal import FunctionGoal
-from linkwork.numerics.homotopy.monodromy import Member
-from linkwork.numerics.homotopy.parameter_roots import ParameterRoots
+from linkwork.circuits.homotopy.monodromy import Member
+from linkwork.circuits.homotopy.parameter_roots import ParameterRoots
+from linkwork.synthesis.loops.driven_loop import Range
+from linkwork.synthesis.six_bars import watt as watt_six_bars
+from linkwork.synthesis.six_bars.watt import WattSixBars
+from linkwork.synthesis.solvers.watt import WattDesign, _completeness, _nine_pairs, driven_range
+from linkwork.synthesis.tasks.function_goal import FunctionGoal
 from tests.design.six_bars.six_bars import ARMS, chebyshev, member_of, turned
 
 INPUTS = 90.0 * chebyshev()

@@ -10,18 +10,17 @@ import numpy as np
 import pytest
 
 import linkwork as lw
-from linkwork.design.improvement.coupler_curves import (
+from linkwork.core.foundation.errors import MechanismError, MechanismFileError
+from linkwork.synthesis.improvement.curve_fit import ANGLE_MARGIN, CurveConstraints
+from linkwork.synthesis.improvement.curves import (
     CouplerCurves,
+    CurveGoal,
     FourBarCurves,
     SliderCrankCurves,
 )
-from linkwork.design.improvement.curve_constraints import ANGLE_MARGIN, CurveConstraints
-from linkwork.design.improvement.curve_goal import CurveGoal
-from linkwork.design.loops.candidates import Drive
-from linkwork.design.synthesis.advice import remarks_on
-from linkwork.design.synthesis.curve_synthesis import curve_goal_of
-from linkwork.design.synthesis.solving import wishes_of
-from linkwork.foundation.errors import MechanismError, MechanismFileError
+from linkwork.synthesis.loops.candidates import Drive
+from linkwork.synthesis.solvers.curves import curve_goal_of
+from linkwork.synthesis.solvers.solving import remarks_on, wishes_of
 
 # Kunjur and Krishnamurty's 18 points, as printed by Bulatovic et al. 2016
 _EIGHTEEN = [

@@ -9,10 +9,10 @@ import numpy as np
 import pytest
 
 import linkwork as lw
-from linkwork.motion.circuit.followed_circuit import FollowedCircuit, explorer_of, straight_way
-from linkwork.motion.curve_branches import TracedCurve, trace_boldly
-from linkwork.motion.drive import Drive
-from linkwork.results.circuits import Circuits
+from linkwork.circuits.branches import TracedCurve, trace_boldly
+from linkwork.circuits.followed_circuit import FollowedCircuit, explorer_of, straight_way
+from linkwork.circuits.results import Circuits
+from linkwork.core.motion.following import Drive
 from tests.campaigns import library_defects
 from tests.campaigns.library_defects import branches_at, judged_change, library_cases
 
@@ -125,7 +125,7 @@ def test_straight_tracks_decide_inputs_that_do_not_turn_as_circuits_do(
     few = len(traced)
     assert straight[::3] == [case.change for case in exact]
     assert len({change and change[0] for change in straight}) > 1
-    undecided = "linkwork.design.defects.by_circuits._Search._straight_starts"
+    undecided = "linkwork.synthesis.defects.by_circuits._Search._straight_starts"
     monkeypatch.setattr(undecided, lambda _: [])
     assert [judged_change(mechanism, case) for case in cases] == straight
     assert 0 < few < len(traced) - few
@@ -156,12 +156,14 @@ def test_branches_that_pass_fewer_positions_do_not_decide(monkeypatch: pytest.Mo
     (defect,) = task.defects_of(mechanism, inputs, point="C")
     assert (defect.kind, defect.between) == (lw.DefectKind.BRANCH, (2, 3))
     # even if all of them end at positions that they may not pass
-    ends = "linkwork.design.defects.by_circuits._Search._end_at"
+    ends = "linkwork.synthesis.defects.by_circuits._Search._end_at"
     monkeypatch.setattr(ends, lambda _, branch, k: "change point" if k == 1 else "")
     assert task.defects_of(mechanism, inputs, point="C") == (defect,)
     with monkeypatch.context() as patched:
         changes = replace(defect, kind=lw.DefectKind.CIRCUIT)
-        patched.setattr("linkwork.design.defects.by_circuits._Search._change", lambda *_: changes)
+        patched.setattr(
+            "linkwork.synthesis.defects.by_circuits._Search._change", lambda *_: changes
+        )
         (undecided,) = task.defects_of(mechanism, inputs, point="C")
         assert undecided.message == "not proved: position 2 is at a change point"
     monkeypatch.setattr(ends, lambda _, branch, k: "change point" if k == 2 else "")
@@ -235,7 +237,7 @@ def _traced(monkeypatch: pytest.MonkeyPatch) -> list[TracedCurve]:
         traced.append(trace_boldly(*given, **options))
         return traced[-1]
 
-    monkeypatch.setattr("linkwork.motion.circuit.walks.trace_boldly", counted)
+    monkeypatch.setattr("linkwork.circuits.branches.trace_boldly", counted)
     return traced
 
 

@@ -8,11 +8,11 @@ import numpy as np
 import pytest
 
 import linkwork as lw
-from linkwork.design.poses.burmester import centre_points, sampled_dyads, sliding_dyad
-from linkwork.design.poses.guiding_linkage import linkage_of
-from linkwork.design.synthesis.result import SynthesizedDesign
-from linkwork.foundation.arrays import Array, ComplexArray
-from linkwork.textfile.writer import write_tables, write_text
+from linkwork.core.foundation.arrays import Array, ComplexArray
+from linkwork.core.textfile.writer import write_tables, write_text
+from linkwork.synthesis.poses.burmester import centre_points, sampled_dyads, sliding_dyad
+from linkwork.synthesis.poses.guiding_linkage import linkage_of
+from linkwork.synthesis.solvers.result import SynthesizedDesign
 
 _POSES = [(0, 0, 0), (200, 100, 15), (320, 260, 40), (300, 420, 75)]
 

@@ -11,17 +11,13 @@ import pytest
 from scipy.optimize import least_squares, minimize
 
 import linkwork as lw
-from linkwork.design.loops.travel import Range
-from linkwork.design.synthesis.advice import remarks_on
-from linkwork.design.synthesis.function_synthesis import freudenstein
-from linkwork.design.synthesis.function_wishes import FunctionWishes
-from linkwork.design.synthesis.structural_error import (
-    rocker_errors,
-    slider_errors,
-)
-from linkwork.design.tasks.wishes import Wishes
-from linkwork.foundation.arrays import Array
-from linkwork.foundation.errors import MechanismError
+from linkwork.core.foundation.arrays import Array
+from linkwork.core.foundation.errors import MechanismError
+from linkwork.synthesis.loops.driven_loop import Range
+from linkwork.synthesis.solvers.function_synthesis import freudenstein
+from linkwork.synthesis.solvers.functions import FunctionWishes, rocker_errors, slider_errors
+from linkwork.synthesis.solvers.solving import remarks_on
+from linkwork.synthesis.tasks.conditions import Wishes
 
 _LOGARITHM = {"x": (1, 2), "input": (45, 105), "output": (0, 90), "mechanism": "four-bar"}
 _PAIRS = [(0, 0), (20, 10), (45, 22), (60, 28), (80, 30)]

@@ -11,16 +11,15 @@ import pytest
 
 import linkwork as lw
 from linkwork.api.designs_folder import FolderOptions, write_designs
-from linkwork.cli.synthesis_page import synthesis_lines
-from linkwork.design.defects.judged_design import JudgedDesign
-from linkwork.design.loops.candidates import Drive
-from linkwork.design.synthesis import improvement_synthesis
-from linkwork.design.synthesis.advice import advice_of, remarks_on
-from linkwork.design.synthesis.designs_table import relative_misses
-from linkwork.design.synthesis.improved_mechanism import ImprovedMechanism
-from linkwork.design.synthesis.solving import wishes_of
-from linkwork.foundation.errors import MechanismFileError
-from linkwork.mechanism.linkage import Linkage
+from linkwork.core.foundation.errors import MechanismFileError
+from linkwork.core.mechanism.linkage import Linkage
+from linkwork.synthesis.commands import synthesis_lines
+from linkwork.synthesis.defects.verdicts import JudgedDesign
+from linkwork.synthesis.loops.candidates import Drive
+from linkwork.synthesis.solvers import improvement as improvement_synthesis
+from linkwork.synthesis.solvers.improved_mechanism import ImprovedMechanism
+from linkwork.synthesis.solvers.result import relative_misses
+from linkwork.synthesis.solvers.solving import advice_of, remarks_on, wishes_of
 
 _HEAD = 'format = 1\ntask = "improve"\nmechanism = "four-bar"\n'
 _HERE = '[improve]\npoint = "{}"\n[[positions]]\npoint = [1, 2]\n[[positions]]\npoint = [{}, {}]\n'

@@ -12,8 +12,8 @@ import pytest
 
 import linkwork as lw
 from linkwork import Completeness
-from linkwork.design.synthesis import path_synthesis
-from linkwork.design.synthesis.advice import remarks_on
+from linkwork.synthesis.solvers import paths as path_synthesis
+from linkwork.synthesis.solvers.solving import remarks_on
 
 _PROBLEM_3 = [
     (0.25, 0.0), (0.52, 0.10), (0.80, 0.70), (1.20, 1.00), (1.40, 1.30), (1.10, 1.48),

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 import linkwork as lw
-from linkwork.design.defects.judged_design import JudgedDesign
+from linkwork.synthesis.defects.verdicts import JudgedDesign
 
 _PAIRS = [(0, 0), (20, 10), (45, 22), (60, 28), (80, 30)]
 _DENSE = [(10 * k, 40 * np.cos(np.radians(30 + 10 * k)) + 3 * k) for k in range(12)]

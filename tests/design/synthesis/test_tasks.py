@@ -10,11 +10,11 @@ import jsonschema
 import pytest
 
 import linkwork as lw
-from linkwork.design.defects import by_circuits
-from linkwork.design.tasks.task_file import read_task_text
-from linkwork.design.tasks.task_keys import TASK
-from linkwork.textfile.schema import schema_of
-from linkwork.textfile.toml_text import data_of
+from linkwork.core.textfile.schema import schema_of
+from linkwork.core.textfile.toml_text import data_of
+from linkwork.synthesis.defects import by_circuits
+from linkwork.synthesis.tasks.task_file import read_task_text
+from linkwork.synthesis.tasks.task_keys import TASK
 
 _EXAMPLES = sorted((Path(__file__).parents[3] / "examples" / "tasks").glob("*.toml"))
 _POSES = "".join(
@@ -158,7 +158,7 @@ def test_a_bad_task_is_refused_with_its_place(
     with pytest.raises(lw.MechanismFileError) as caught:
         read_task_text(text, "task.toml")
     problems = caught.value.problems
-    from linkwork.foundation.errors import key_text
+    from linkwork.core.foundation.errors import key_text
 
     found = [p for p in problems if key_text(p.key) == key]
     assert found, [(key_text(p.key), p.message) for p in problems]

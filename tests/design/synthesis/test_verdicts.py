@@ -5,13 +5,11 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from linkwork.design.defects.verdicts import DefectKind, judge
-from linkwork.design.loops.candidates import Candidates, Drive, LoopKind
-from linkwork.design.loops.driven_loop import driven_loops
-from linkwork.design.loops.loop_limits import cross
-from linkwork.design.loops.loop_positions import pivots_at
-from linkwork.design.loops.travel import NOWHERE, Range
-from linkwork.design.tasks.wishes import Wishes, distances_to_segments
+from linkwork.synthesis.defects.verdicts import DefectKind, judge
+from linkwork.synthesis.loops.candidates import Candidates, Drive, LoopKind
+from linkwork.synthesis.loops.driven_loop import NOWHERE, Range, driven_loops, pivots_at
+from linkwork.synthesis.loops.limits import cross
+from linkwork.synthesis.tasks.conditions import Wishes, distances_to_segments
 from tests.campaigns.defects import defect_campaign, random_designs
 
 _POSSIBLE = [

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 import linkwork as lw
-from linkwork.foundation.errors import InputError
+from linkwork.core.foundation.errors import InputError
 
 
 def circle(start: float, stop: float, step: float = 1.0) -> lw.Mechanism:

@@ -12,14 +12,13 @@ import numpy as np
 import pytest
 
 import linkwork as lw
-from linkwork.batch.study import read_plan_text
-from linkwork.cli.main import linkwork
-from linkwork.drawing.charts.columns import column_of
-from linkwork.export import csv_lines, workbook_of
-from linkwork.foundation.errors import InputError, MechanismError, UnknownNameError
-from linkwork.results.quantities.index import MOTION_QUANTITIES, ROW_QUANTITIES
-from linkwork.results.quantities.registry import EVIDENCE
-from linkwork.viewer import motion_page
+from linkwork.app import motion_page
+from linkwork.core.commands.main import linkwork
+from linkwork.core.foundation.errors import InputError, MechanismError, UnknownNameError
+from linkwork.core.results.quantities.registry import EVIDENCE, MOTION_QUANTITIES, ROW_QUANTITIES
+from linkwork.families.study import read_plan_text
+from linkwork.writers import csv_lines, workbook_of
+from linkwork.writers.charts.columns import column_of
 from tests.viewer.unpacking import unpacked
 
 ROWS = ["B.transmission", "rocker.mechanical_advantage", "B.curvature", "B.centre.x", "B.centre.y"]

@@ -14,9 +14,9 @@ import pytest
 from websockets.sync.client import ClientConnection, connect
 
 import linkwork as lw
-from linkwork.viewer.live.mechanism_file import MechanismFile
-from linkwork.viewer.live.server import LiveServer
-from linkwork.viewer.live.workbench import Workbench
+from linkwork.app.live.mechanism_file import MechanismFile
+from linkwork.app.live.server import LiveServer
+from linkwork.app.live.workbench import Workbench
 
 FOUR_BAR = """\
 # A four-bar to be dragged about

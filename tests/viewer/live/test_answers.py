@@ -11,9 +11,9 @@ import numpy as np
 import pytest
 
 import linkwork as lw
-from linkwork.viewer.live import events as tell, requests as ask
-from linkwork.viewer.live.mechanism_file import MechanismFile
-from linkwork.viewer.live.workbench import Workbench
+from linkwork.app.live import events as tell, requests as ask
+from linkwork.app.live.mechanism_file import MechanismFile
+from linkwork.app.live.workbench import Workbench
 from tests.viewer.live.conftest import FOUR_BAR
 from tests.viewer.unpacking import unpacked
 

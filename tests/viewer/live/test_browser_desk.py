@@ -10,9 +10,9 @@ import pytest
 
 import linkwork as lw
 from linkwork.api import example_text
-from linkwork.design.synthesis.solving import solve_task
-from linkwork.textfile.link import fragment_of
-from linkwork.viewer.live.browser_desk import BrowserDesk
+from linkwork.app.live.browser_desk import BrowserDesk
+from linkwork.core.textfile.link import fragment_of
+from linkwork.synthesis.solvers.solving import solve_task
 from tests.viewer.live.conftest import FOUR_BAR
 
 
@@ -119,7 +119,7 @@ def test_a_newer_change_cancels_a_cycle_that_is_being_solved(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.chdir(tmp_path)
-    monkeypatch.setattr("linkwork.viewer.live.browser_desk._LOOK_FOR_MESSAGES", 0.0)
+    monkeypatch.setattr("linkwork.app.live.browser_desk._LOOK_FOR_MESSAGES", 0.0)
     page = Page(pauses=True)
     page.desk.open("four-bar.toml", FOUR_BAR)
     page.later = [json.dumps({"kind": "set_number", "name": "a", "value": 42, "id": 2})]
@@ -193,7 +193,7 @@ def test_names_stay_in_the_folder(page: Page, tmp_path: Path) -> None:
 
 
 def test_long_work_gives_signs(page: Page, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("linkwork.viewer.live.waiting._PACE", 0.0)
+    monkeypatch.setattr("linkwork.app.live.session._PACE", 0.0)
     told: list[dict[str, Any]] = []
     monkeypatch.setattr(page, "_tell", lambda event: told.append(json.loads(event)))
     page.desk._tell = page._tell

@@ -11,9 +11,9 @@ from typing import Any
 import pytest
 
 import linkwork as lw
-from linkwork.viewer.live.mechanism_file import MechanismFile, blank_sheet, new_file
-from linkwork.viewer.live.server import LiveServer
-from linkwork.viewer.live.workbench import Workbench
+from linkwork.app.live.mechanism_file import MechanismFile, blank_sheet, new_file
+from linkwork.app.live.server import LiveServer
+from linkwork.app.live.workbench import Workbench
 from tests.viewer.accessibility import assert_accessible
 from tests.viewer.conftest import browser as browser  # the fixture, for this folder too
 from tests.viewer.live.conftest import FOUR_BAR

@@ -7,10 +7,10 @@ from pathlib import Path
 import pytest
 
 import linkwork as lw
-from linkwork.viewer.live import requests as ask
-from linkwork.viewer.live.file_state import FileState
-from linkwork.viewer.live.mechanism_file import MechanismFile
-from linkwork.viewer.live.workbench import Workbench
+from linkwork.app.live import requests as ask
+from linkwork.app.live.file_state import FileState
+from linkwork.app.live.mechanism_file import MechanismFile
+from linkwork.app.live.workbench import Workbench
 
 
 @pytest.mark.parametrize("ground", ["", 'ground = ["A", "B"]'])

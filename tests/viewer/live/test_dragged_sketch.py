@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import numpy as np
 
-from linkwork.viewer.live import events as tell, requests as ask
-from linkwork.viewer.live.workbench import Workbench
-from linkwork.viewer.page_data import PageData
+from linkwork.app.live import events as tell, requests as ask
+from linkwork.app.live.workbench import Workbench
+from linkwork.app.pages.page_data import PageData
 
 
 def _drag(bench: Workbench, x: float, *, live: bool = True) -> list[tell.Event]:

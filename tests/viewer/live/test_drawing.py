@@ -11,9 +11,9 @@ from typing import Any
 import pytest
 
 import linkwork as lw
-from linkwork.viewer.live.mechanism_file import MechanismFile, blank_sheet
-from linkwork.viewer.live.server import LiveServer
-from linkwork.viewer.live.workbench import Workbench
+from linkwork.app.live.mechanism_file import MechanismFile, blank_sheet
+from linkwork.app.live.server import LiveServer
+from linkwork.app.live.workbench import Workbench
 from tests.viewer.live.rest import at_rest
 
 Place = tuple[float, float]

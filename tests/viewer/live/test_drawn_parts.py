@@ -8,11 +8,12 @@ from pathlib import Path
 import pytest
 
 import linkwork as lw
-from linkwork.mechanism.part.index import PARTS
-from linkwork.viewer.live import events as tell, requests as ask
-from linkwork.viewer.live.mechanism_file import MechanismFile, blank_sheet
-from linkwork.viewer.live.palette import PALETTE
-from linkwork.viewer.live.workbench import Workbench
+from linkwork.app.live import events as tell, requests as ask
+from linkwork.app.live.file_state import FileState
+from linkwork.app.live.mechanism_file import MechanismFile, blank_sheet
+from linkwork.app.live.palette import PALETTE
+from linkwork.app.live.workbench import Workbench
+from linkwork.core.mechanism.part.index import PARTS
 
 Place = tuple[float, float]
 
@@ -23,11 +24,11 @@ class Drawing:
     def __init__(self, path: Path) -> None:
         self.bench = Workbench(MechanismFile(path, blank_sheet("drawn")), lw.loads)
 
-    def change(self, *edits: ask.Edit) -> tell.FileState:
+    def change(self, *edits: ask.Edit) -> FileState:
         """The state after edits that are accepted."""
         request = edits[0] if len(edits) == 1 else ask.Together(edits=edits)
         events = self.bench.handle(request)
-        assert isinstance(events[0], tell.FileState), events
+        assert isinstance(events[0], FileState), events
         return events[0]
 
     def link(self, name: str, *ends: tuple[str, float, float] | str, fixed: str = "") -> None:
@@ -42,7 +43,7 @@ class Drawing:
         """Places, points and links; ``~name`` is a link."""
         return ask.DrawPart(table=table, picks=tuple(map(self._picked, picks)), span=20.0)
 
-    def draw(self, table: str, *picks: ask.Picked | Place | str) -> tell.FileState:
+    def draw(self, table: str, *picks: ask.Picked | Place | str) -> FileState:
         return self.change(self.request(table, *picks))
 
     def _picked(self, pick: ask.Picked | Place | str) -> ask.Picked:

@@ -11,8 +11,8 @@ from typing import Any
 import pytest
 
 import linkwork as lw
-from linkwork.mechanism.linkage import Linkage
-from linkwork.textfile.link import text_of_link
+from linkwork.core.mechanism.linkage import Linkage
+from linkwork.core.textfile.link import text_of_link
 from tests.described import described_as
 from tests.viewer.accessibility import assert_accessible
 from tests.viewer.live.conftest import FOUR_BAR, Served

@@ -8,10 +8,12 @@ import pytest
 
 import linkwork as lw
 from linkwork.api import example_text
-from linkwork.mechanism.linkage import Linkage
-from linkwork.viewer.live import events as tell, requests as ask
-from linkwork.viewer.live.mechanism_file import MechanismFile
-from linkwork.viewer.live.workbench import Workbench
+from linkwork.app.live import events as tell, requests as ask
+from linkwork.app.live.file_state import FileState
+from linkwork.app.live.mechanism_file import MechanismFile
+from linkwork.app.live.whole_edits import Rename
+from linkwork.app.live.workbench import Workbench
+from linkwork.core.mechanism.linkage import Linkage
 from tests.described import described_as
 
 
@@ -23,9 +25,9 @@ def bench(tmp_path: Path) -> Workbench:
     return Workbench(MechanismFile(path), lw.loads)
 
 
-def change(bench: Workbench, edit: ask.Request) -> tell.FileState:
+def change(bench: Workbench, edit: ask.Request) -> FileState:
     events = bench.handle(edit)
-    assert isinstance(events[0], tell.FileState), events
+    assert isinstance(events[0], FileState), events
     return events[0]
 
 
@@ -155,7 +157,7 @@ def test_an_entry_is_written_in_place_and_undone_by_name(
         assert isinstance(events[0], tell.ProblemsFound)
         assert bench.text == before
         return
-    assert isinstance(events[0], tell.FileState)
+    assert isinstance(events[0], FileState)
     assert events[0].undo == undo
     assert line in bench.text.splitlines()
     old, new = before.splitlines(), bench.text.splitlines()
@@ -216,5 +218,5 @@ def test_stops_follow_the_names_of_what_they_bound(bench: Workbench) -> None:
     for of in ("C.y", "rod", "height"):
         change(bench, _entry("stops", "", of=of, to="990"))
     for of, name, new in (("point", "C", "Q"), ("link", "rod", "bar"), ("part", "height", "h")):
-        change(bench, ask.Rename(of=of, name=name, new=new))
+        change(bench, Rename(of=of, name=name, new=new))
     assert [stop.of for stop in now(bench).stops] == ["Q.y", "bar", "h"]

@@ -10,15 +10,9 @@ from typing import Any, get_args
 import pytest
 from hypothesis import given, strategies as st
 
-from linkwork.viewer.live import requests as ask
-from linkwork.viewer.live.events import EVENTS, Refused
-from linkwork.viewer.live.messages import (
-    LARGEST_MESSAGE,
-    MessageError,
-    decoded,
-    encoded,
-    kind_of,
-)
+from linkwork.app.live import requests as ask
+from linkwork.app.live.events import EVENTS, Refused
+from linkwork.app.live.messages import LARGEST_MESSAGE, MessageError, decoded, encoded, kind_of
 
 
 def sent(**fields: Any) -> str:

@@ -11,13 +11,13 @@ import pytest
 
 import linkwork as lw
 from linkwork.api import example_text
-from linkwork.design.synthesis.solving import solve_task
-from linkwork.viewer.live import events as tell, requests as ask
-from linkwork.viewer.live.bench import Bench
-from linkwork.viewer.live.mechanism_file import new_file
-from linkwork.viewer.live.messages import MessageError, decoded
-from linkwork.viewer.live.server import LiveServer
-from linkwork.viewer.live.task.templates import task_template
+from linkwork.app.live import events as tell, requests as ask
+from linkwork.app.live.bench import Bench
+from linkwork.app.live.mechanism_file import new_file
+from linkwork.app.live.messages import MessageError, decoded
+from linkwork.app.live.server import LiveServer
+from linkwork.app.task.templates import task_template
+from linkwork.synthesis.solvers.solving import solve_task
 from tests.exchange.samples import GEOGEBRA, MJCF, PMKS_LINES, PYSLVS, URDF, dxf_text, packed
 
 #: A file is dragged from another program onto the page, and dropped.

@@ -14,11 +14,11 @@ import numpy as np
 import pytest
 
 import linkwork as lw
-from linkwork.mechanism.linkage import Linkage
-from linkwork.results.csv_text import csv_text
-from linkwork.viewer.live import events as tell, requests as ask
-from linkwork.viewer.live.mechanism_file import MechanismFile
-from linkwork.viewer.live.workbench import Workbench
+from linkwork.app.live import events as tell, requests as ask
+from linkwork.app.live.mechanism_file import MechanismFile
+from linkwork.app.live.workbench import Workbench
+from linkwork.core.mechanism.linkage import Linkage
+from linkwork.core.results.tables import csv_text
 from tests.described import described_as
 from tests.forces.random_loads import loaded
 from tests.viewer.live.conftest import serving

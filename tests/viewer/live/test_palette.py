@@ -10,10 +10,11 @@ from typing import Any
 import pytest
 
 import linkwork as lw
-from linkwork.mechanism.part.index import PARTS
-from linkwork.viewer.live.events import PaletteField
-from linkwork.viewer.live.palette import PALETTE, Typed, part_of
-from linkwork.viewer.live.typed_units import TypedUnits
+from linkwork.app.live.file_state import PaletteField
+from linkwork.app.live.number_edits import TypedUnits
+from linkwork.app.live.palette import PALETTE, part_of
+from linkwork.app.live.requests import Typed
+from linkwork.core.mechanism.part.index import PARTS
 
 MM = TypedUnits("mm", "deg")
 FIELDS = {part.table: {field.name: field for field in part.fields} for part in PALETTE}

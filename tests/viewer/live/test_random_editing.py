@@ -11,13 +11,14 @@ import pytest
 from hypothesis import HealthCheck, given, settings, strategies as st
 
 import linkwork as lw
-from linkwork.design.synthesis.solving import solve_task
-from linkwork.viewer.live import events as tell, requests as ask
-from linkwork.viewer.live.bench import Bench
-from linkwork.viewer.live.mechanism_file import MechanismFile
-from linkwork.viewer.live.messages import encoded
-from linkwork.viewer.live.task_requests import OpenTask
-from linkwork.viewer.live.workbench import Workbench
+from linkwork.app.live import events as tell, requests as ask
+from linkwork.app.live.bench import Bench
+from linkwork.app.live.file_state import FileState
+from linkwork.app.live.mechanism_file import MechanismFile
+from linkwork.app.live.messages import encoded
+from linkwork.app.live.task_requests import OpenTask
+from linkwork.app.live.workbench import Workbench
+from linkwork.synthesis.solvers.solving import solve_task
 from tests.viewer.live.conftest import FOUR_BAR
 
 NAMES = st.sampled_from(
@@ -73,7 +74,7 @@ def test_any_requests_are_answered_and_the_file_is_left_alone(
             assert encoded(event)
     palette, state, *_ = bench.opened()
     assert isinstance(palette, tell.PaletteShown)
-    assert isinstance(state, tell.FileState)
+    assert isinstance(state, FileState)
     # what is kept is a mechanism, or is said not to be
     assert state.lacks or isinstance(lw.loads(state.text), lw.Mechanism)
     assert path.read_text(encoding="utf-8") == FOUR_BAR

@@ -21,9 +21,9 @@ from websockets.exceptions import ConnectionClosed, InvalidHandshake, InvalidSta
 from websockets.sync.client import ClientConnection
 
 import linkwork as lw
-from linkwork.viewer.live.messages import LARGEST_MESSAGE
-from linkwork.viewer.live.server import LiveServer
-from linkwork.viewer.live.workbench import Workbench
+from linkwork.app.live.messages import LARGEST_MESSAGE
+from linkwork.app.live.server import LiveServer
+from linkwork.app.live.workbench import Workbench
 from tests.viewer.live.conftest import FOUR_BAR, Served, ask, told
 
 
@@ -279,7 +279,7 @@ def test_strangers_that_hold_connections_do_not_keep_the_owner_out(
 def test_a_connection_without_a_page_ends_by_itself(
     served: Served, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr("linkwork.viewer.live.short_connections.PATIENCE", 0.3)
+    monkeypatch.setattr("linkwork.app.live.short_connections.PATIENCE", 0.3)
     with served.connect() as page:
         told(page, "motion_found")
         with strangers(served, 2, b"GET /") as links:
@@ -530,7 +530,7 @@ def test_a_file_that_cannot_be_read_is_refused_by_the_command(tmp_path: Path) ->
 def test_without_its_packages_the_command_says_what_to_install(path: Path) -> None:
     program = (
         "import sys; sys.modules['uvicorn'] = None\n"
-        "from linkwork.cli.main import linkwork\n"
+        "from linkwork.core.commands.main import linkwork\n"
         f"linkwork(['view', {str(path)!r}, '--no-browser'])\n"
     )
     done = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True)

@@ -12,12 +12,12 @@ import numpy as np
 import pytest
 
 import linkwork as lw
-from linkwork.design.synthesis.solving import solve_task
-from linkwork.viewer.live import events as tell, requests as ask
-from linkwork.viewer.live.browser_desk import BrowserDesk
-from linkwork.viewer.live.mechanism_file import MechanismFile
-from linkwork.viewer.live.workbench import Workbench
-from linkwork.viewer.play_order import play_order
+from linkwork.app.live import events as tell, requests as ask
+from linkwork.app.live.browser_desk import BrowserDesk
+from linkwork.app.live.mechanism_file import MechanismFile
+from linkwork.app.live.workbench import Workbench
+from linkwork.app.pages.packing import play_order
+from linkwork.synthesis.solvers.solving import solve_task
 from tests.viewer.live.conftest import Served, ask as send, serving, told
 from tests.viewer.live.test_live_page import open_live as open_live
 

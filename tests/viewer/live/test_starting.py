@@ -11,15 +11,16 @@ from typing import Any
 import pytest
 
 import linkwork as lw
-from linkwork.foundation.errors import InputError
-from linkwork.viewer.live import events as tell, requests as ask
-from linkwork.viewer.live.mechanism_file import new_file
-from linkwork.viewer.live.server import LiveServer
-from linkwork.viewer.live.workbench import Workbench
+from linkwork.app.live import events as tell, requests as ask
+from linkwork.app.live.file_state import FileState
+from linkwork.app.live.mechanism_file import new_file
+from linkwork.app.live.server import LiveServer
+from linkwork.app.live.workbench import Workbench
+from linkwork.core.foundation.errors import InputError
 from scripts.thumbnails import entry
 
 LIBRARY = json.loads(
-    resources.files("linkwork.viewer").joinpath("library.json").read_text(encoding="utf-8")
+    resources.files("linkwork.app").joinpath("library.json").read_text(encoding="utf-8")
 )
 
 
@@ -46,7 +47,7 @@ def test_the_library_is_offered_until_a_mechanism_is_opened(started: Workbench) 
 def test_the_blank_sheet_is_opened_under_a_free_name(started: Workbench, tmp_path: Path) -> None:
     (tmp_path / "untitled.toml").write_text("format = 1\n", encoding="utf-8")
     events = started.handle(ask.OpenExample(name=""))
-    state = next(event for event in events if isinstance(event, tell.FileState))
+    state = next(event for event in events if isinstance(event, FileState))
     assert (state.file, state.unsaved) == ("untitled-2.toml", False)
     assert (tmp_path / "untitled.toml").read_text(encoding="utf-8") == "format = 1\n"
 

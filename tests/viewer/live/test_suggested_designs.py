@@ -12,15 +12,16 @@ import numpy as np
 import pytest
 
 import linkwork as lw
-from linkwork.design.suggestion import suggesting
-from linkwork.design.synthesis.result import Synthesis
-from linkwork.design.synthesis.solving import solve_task
-from linkwork.design.tasks.task import Task
-from linkwork.viewer.live import events as tell, requests as ask, task_requests as do
-from linkwork.viewer.live.answers import Hurry
-from linkwork.viewer.live.bench import Bench
-from linkwork.viewer.live.mechanism_file import MechanismFile
-from linkwork.viewer.live.server import LiveServer
+from linkwork.app.live import events as tell, requests as ask, task_requests as do
+from linkwork.app.live.answers import Hurry
+from linkwork.app.live.bench import Bench
+from linkwork.app.live.mechanism_file import MechanismFile
+from linkwork.app.live.server import LiveServer
+from linkwork.app.live.task_events import DesignFound, DesignsSuggested, TaskSolved, TaskUnsolved
+from linkwork.synthesis.solvers.result import Synthesis
+from linkwork.synthesis.solvers.solving import solve_task
+from linkwork.synthesis.suggestion import suggesting
+from linkwork.synthesis.tasks.task import Task
 from tests.viewer.accessibility import assert_accessible
 
 #: A four-bar's path with twelve points, searched from a few starts.
@@ -59,14 +60,14 @@ def opened(folder: Path, text: str, solve: Any = unsolved) -> Bench:
     return Bench(MechanismFile(path), lw.loads, solve, lambda: suggesting)
 
 
-def suggested(events: list[tell.Event]) -> tell.DesignsSuggested:
+def suggested(events: list[tell.Event]) -> DesignsSuggested:
     """The designs that were suggested."""
-    return next(event for event in events if isinstance(event, tell.DesignsSuggested))
+    return next(event for event in events if isinstance(event, DesignsSuggested))
 
 
-def looked(events: list[tell.Event]) -> tell.DesignFound:
+def looked(events: list[tell.Event]) -> DesignFound:
     """The design that was shown last."""
-    return [event for event in events if isinstance(event, tell.DesignFound)][-1]
+    return [event for event in events if isinstance(event, DesignFound)][-1]
 
 
 @dataclass
@@ -141,7 +142,7 @@ def test_a_task_that_improves_shows_its_mechanism_before_the_search_ends(tmp_pat
     given = looked(signs.shown)
     assert given.design.origin == "as given"
     assert given.design.mechanism == "slider-crank"
-    solved = next(event for event in events if isinstance(event, tell.TaskSolved))
+    solved = next(event for event in events if isinstance(event, TaskSolved))
     assert solved.chosen is not None
     assert solved.chosen.design.index == 0
     assert solved.chosen.skeleton is not None
@@ -155,7 +156,7 @@ def test_a_point_that_the_mechanism_does_not_have_is_told_and_can_be_corrected(
 ) -> None:
     goals = IMPROVE.index("[[improve.goals]]")
     bench = opened(tmp_path, IMPROVE[:goals] + 'point = "Q"\n\n' + IMPROVE[goals:], solve_task)
-    unsolved = next(event for event in bench.opened() if isinstance(event, tell.TaskUnsolved))
+    unsolved = next(event for event in bench.opened() if isinstance(event, TaskUnsolved))
     assert [problem.key for problem in unsolved.problems] == ["improve.point"]
     events = bench.handle(do.SetTaskEntry(key="improve.point", value="B"))
     assert suggested(events).designs[0].origin == "as given"

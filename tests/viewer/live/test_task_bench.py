@@ -11,25 +11,33 @@ import numpy as np
 import pytest
 
 import linkwork as lw
-from linkwork.design.loops.candidates import GUIDED
-from linkwork.design.six_bars import watt_six_bars
-from linkwork.design.synthesis.result import Synthesis
-from linkwork.design.synthesis.solving import solve_task
-from linkwork.design.tasks.task import Task
-from linkwork.design.tasks.wanted_mechanisms import MECHANISMS
-from linkwork.foundation.errors import InputError
-from linkwork.results.listing.number_text import rounded_down
-from linkwork.viewer.live import events as tell, requests as ask, task_requests as do
-from linkwork.viewer.live.answers import GivenUpError, Hurry
-from linkwork.viewer.live.bench import Bench
-from linkwork.viewer.live.mechanism_file import MechanismFile, new_file
-from linkwork.viewer.live.opened_file import NoSign
-from linkwork.viewer.live.session import Desk
-from linkwork.viewer.live.task import designs
-from linkwork.viewer.live.task.bench import TaskBench
-from linkwork.viewer.live.task.cycle import SolveTask
-from linkwork.viewer.live.task.templates import task_template, template_names, template_text
-from linkwork.viewer.live.workbench import Workbench
+from linkwork.app.live import events as tell, requests as ask, task_requests as do
+from linkwork.app.live.answers import GivenUpError, Hurry
+from linkwork.app.live.bench import Bench
+from linkwork.app.live.file_state import FileState
+from linkwork.app.live.mechanism_file import MechanismFile, new_file
+from linkwork.app.live.opened_file import NoSign
+from linkwork.app.live.session import Desk
+from linkwork.app.live.task_events import (
+    CognatesFound,
+    DesignFound,
+    DesignOpened,
+    TaskSolved,
+    TaskState,
+    TaskUnsolved,
+)
+from linkwork.app.live.workbench import Workbench
+from linkwork.app.task import designs
+from linkwork.app.task.bench import TaskBench
+from linkwork.app.task.cycle import SolveTask
+from linkwork.app.task.templates import task_template, template_names, template_text
+from linkwork.core.foundation.errors import InputError
+from linkwork.core.results.listing.motion_listing import rounded_down
+from linkwork.synthesis.loops.candidates import GUIDED
+from linkwork.synthesis.six_bars import watt as watt_six_bars
+from linkwork.synthesis.solvers.result import Synthesis
+from linkwork.synthesis.solvers.solving import solve_task
+from linkwork.synthesis.tasks.task import MECHANISMS, Task
 from tests.design.six_bars.six_bars import ARMS, chebyshev, member_of
 
 
@@ -52,10 +60,10 @@ def last(events: list[tell.Event], kind: type) -> tell.Event:
     return [event for event in events if isinstance(event, kind)][-1]
 
 
-def solved(events: list[tell.Event]) -> tell.TaskSolved:
+def solved(events: list[tell.Event]) -> TaskSolved:
     """The designs that were told."""
-    found = last(events, tell.TaskSolved)
-    assert isinstance(found, tell.TaskSolved)
+    found = last(events, TaskSolved)
+    assert isinstance(found, TaskSolved)
     return found
 
 
@@ -92,7 +100,7 @@ def test_a_six_bar_is_shown_moving_through_its_positions(
     assert len(found.rows) > 80
     assert np.allclose(found.marks, np.array(90.0 * chebyshev()) / 90.0 * (len(found.rows) - 1))
     events = bench.handle(do.ShowDesign(design=0))
-    assert last(events, tell.DesignFound) == found
+    assert last(events, DesignFound) == found
 
 
 def test_every_task_to_begin_with_can_be_read() -> None:
@@ -163,7 +171,7 @@ def test_a_refused_design_has_its_reason_and_no_motion(tmp_path: Path) -> None:
     assert refused
     assert all(design.reason for design in refused)
     (shown,) = bench.handle(do.ShowDesign(design=refused[0].index))
-    assert isinstance(shown, tell.DesignFound)
+    assert isinstance(shown, DesignFound)
     assert shown.rows == ()
     assert len(shown.at) == 5
 
@@ -251,12 +259,12 @@ def test_two_equal_points_are_told_and_can_be_drawn_apart(tmp_path: Path) -> Non
     x, y = positions(bench)[0]
     bench.handle(do.TurnPose(index=1, angle=0))
     events = bench.handle(do.MoveTaskPoint(of="position", index=1, x=x, y=y))
-    unsolved = last(events, tell.TaskUnsolved)
-    assert isinstance(unsolved, tell.TaskUnsolved)
+    unsolved = last(events, TaskUnsolved)
+    assert isinstance(unsolved, TaskUnsolved)
     assert "the same as position 1" in unsolved.problems[0].message
     assert unsolved.problems[0].line is not None
-    state = last(events, tell.TaskState)
-    assert isinstance(state, tell.TaskState)
+    state = last(events, TaskState)
+    assert isinstance(state, TaskState)
     assert len(state.positions) == 5
     assert solved(bench.handle(do.MoveTaskPoint(of="position", index=1, x=-26, y=52))).count
 
@@ -265,21 +273,21 @@ def test_a_half_drawn_task_is_shown_with_what_it_lacks(tmp_path: Path) -> None:
     path = tmp_path / "task.toml"
     path.write_text('format = 1\ntask = "path"\n', encoding="utf-8")
     bench = Bench(MechanismFile(path), lw.loads, searching)
-    unsolved = last(bench.opened(), tell.TaskUnsolved)
-    assert isinstance(unsolved, tell.TaskUnsolved)
+    unsolved = last(bench.opened(), TaskUnsolved)
+    assert isinstance(unsolved, TaskUnsolved)
     assert unsolved.problems[0].key == "positions"
     for k in range(2):
         events = bench.handle(do.AddTaskPoint(of="position", x=10.0 * k, y=0))
     assert positions(bench) == [(0, 0), (10, 0)]
-    assert isinstance(events[0], tell.TaskState)
+    assert isinstance(events[0], TaskState)
 
 
 def test_a_text_that_is_not_toml_keeps_the_canvas_and_refuses_drags(tmp_path: Path) -> None:
     bench = opened(tmp_path, "five-poses")
     bench.opened()
     events = bench.handle(ask.SetText(text=bench.text + "\n[["))
-    state = last(events, tell.TaskState)
-    assert isinstance(state, tell.TaskState)
+    state = last(events, TaskState)
+    assert isinstance(state, TaskState)
     assert len(state.positions) == 5
     assert state.problems[0].line is not None
     (refused,) = bench.handle(do.MoveTaskPoint(of="position", index=0, x=1, y=1))
@@ -361,8 +369,8 @@ def test_a_page_that_connects_during_a_search_shows_the_task_at_once(tmp_path: P
         desk.prepare()
         assert begun.wait(60)
         desk.open()
-        assert kinds.count(tell.TaskState) == 2
-        assert tell.TaskSolved not in kinds
+        assert kinds.count(TaskState) == 2
+        assert TaskSolved not in kinds
     finally:
         finish.set()
         desk.close(60)
@@ -371,9 +379,9 @@ def test_a_page_that_connects_during_a_search_shows_the_task_at_once(tmp_path: P
 def test_a_search_ends_for_a_newer_change_and_is_told(tmp_path: Path) -> None:
     bench = opened(tmp_path, "curve", searching)
     bench.listen(lambda: Hurry.CHANGE, NoSign())
-    assert [type(event) for event in bench.opened()] == [tell.TaskState]
+    assert [type(event) for event in bench.opened()] == [TaskState]
     (ended,) = bench.handle(ask.Cancel())
-    assert isinstance(ended, tell.TaskUnsolved)
+    assert isinstance(ended, TaskUnsolved)
     assert ended.ended
 
 
@@ -397,7 +405,7 @@ def test_a_design_is_opened_as_a_mechanism_and_left_again(tmp_path: Path) -> Non
     bench.opened()
     bench.handle(do.TurnPose(index=1, angle=28))
     kinds = [type(event) for event in bench.handle(do.OpenDesign(design=0))]
-    assert {tell.FileState, tell.MotionFound, tell.DesignOpened} <= set(kinds)
+    assert {FileState, tell.MotionFound, DesignOpened} <= set(kinds)
     assert type(bench.current).__name__ == "Workbench"
     bench.handle(ask.SetText(text=f"{bench.text}# mine\n"))
     (refused,) = bench.handle(do.ReturnToTask())
@@ -419,7 +427,7 @@ def test_cognates_share_their_curve_and_have_their_verdicts(tmp_path: Path) -> N
     found = solved(bench.opened())
     index = next(design.index for design in found.designs if design.mechanism == "four-bar")
     (shown,) = bench.handle(do.ShowCognates(design=index))
-    assert isinstance(shown, tell.CognatesFound)
+    assert isinstance(shown, CognatesFound)
     assert len(shown.cognates) == 3
     ends = [{name: complex(*place) for name, place in one.points.items()} for one in shown.cognates]
     # three linkages on three fixed pivots, which form a triangle similar to each coupler
@@ -447,8 +455,8 @@ def test_the_start_page_opens_a_task(tmp_path: Path, monkeypatch: pytest.MonkeyP
     monkeypatch.chdir(tmp_path)
     bench = Bench(new_file(), lw.loads, solve_task, start=True)
     assert isinstance(bench.opened()[1], tell.StartOffered)
-    assert isinstance(bench.handle(do.OpenTask(name="five-poses"))[0], tell.TaskState)
-    assert isinstance(bench.handle(ask.OpenExample(name="four-bar"))[1], tell.FileState)
+    assert isinstance(bench.handle(do.OpenTask(name="five-poses"))[0], TaskState)
+    assert isinstance(bench.handle(ask.OpenExample(name="four-bar"))[1], FileState)
 
 
 _FIVE_POINTS = """\

@@ -9,11 +9,11 @@ from typing import Any
 import pytest
 
 import linkwork as lw
-from linkwork.design.synthesis.solving import solve_task
-from linkwork.viewer.live.bench import Bench
-from linkwork.viewer.live.mechanism_file import MechanismFile, new_file
-from linkwork.viewer.live.server import LiveServer
-from linkwork.viewer.live.task.templates import task_template
+from linkwork.app.live.bench import Bench
+from linkwork.app.live.mechanism_file import MechanismFile, new_file
+from linkwork.app.live.server import LiveServer
+from linkwork.app.task.templates import task_template
+from linkwork.synthesis.solvers.solving import solve_task
 from tests.viewer.accessibility import assert_accessible
 
 Serve = Callable[[Bench], LiveServer]

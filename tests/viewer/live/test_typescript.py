@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import re
 
-from linkwork.viewer.live.events import EVENTS
-from linkwork.viewer.live.requests import REQUESTS
-from linkwork.viewer.live.typescript import typescript_types
+from linkwork.app.live.events import EVENTS
+from linkwork.app.live.messages import typescript_types
+from linkwork.app.live.requests import REQUESTS
 
 
 def interface(name: str) -> str:

@@ -7,10 +7,12 @@ from typing import Any
 import pytest
 
 import linkwork as lw
-from linkwork.viewer.live import events as tell, requests as ask
-from linkwork.viewer.live.palette import part_of
-from linkwork.viewer.live.typed_units import TypedUnits
-from linkwork.viewer.live.workbench import Workbench
+from linkwork.app.live import events as tell, requests as ask
+from linkwork.app.live.file_state import FileState
+from linkwork.app.live.number_edits import TypedUnits
+from linkwork.app.live.palette import part_of
+from linkwork.app.live.whole_edits import AddOutput, ChangeUnits, Duplicate, Mirror, Rename
+from linkwork.app.live.workbench import Workbench
 from tests.viewer.live.test_workbench import number, only
 
 MM = TypedUnits("mm", "deg")
@@ -49,7 +51,7 @@ def test_a_wrong_unit_is_refused(typed: str, kind: str, units: TypedUnits, messa
 
 
 def test_fields_take_units(bench: Workbench) -> None:
-    state = only(bench.handle(ask.SetNumber(name="A B", value="4.8 in")), tell.FileState)
+    state = only(bench.handle(ask.SetNumber(name="A B", value="4.8 in")), FileState)
     assert number(state, "A B").value == 121.92
     assert state.undo == "A B = 4.8 in"
     # a dimension is a length because lengths are made of it
@@ -57,11 +59,11 @@ def test_fields_take_units(bench: Workbench) -> None:
     told = bench.handle(ask.SetNumber(name="a", value="30 deg", any_formula=True))
     refused = only(told, tell.Refused)
     assert '"a" is a length, but "30 deg" is an angle' in refused.message
-    state = only(bench.handle(ask.SetInput(start="0.25 turn", stop="2 rad")), tell.FileState)
+    state = only(bench.handle(ask.SetInput(start="0.25 turn", stop="2 rad")), FileState)
     assert "from = 90" in state.text
     assert "to = 114.591559" in state.text
     point = ask.AddPoint(name="Q", x="1 in", y="2 cm", links=("coupler",))
-    state = only(bench.handle(point), tell.FileState)
+    state = only(bench.handle(point), FileState)
     assert "Q = [25.4, 20.0]" in state.text
     typed: dict[str, str | tuple[str, ...]] = {
         "name": "g", "wheels": ("crank", "rocker"), "centers": ("O2", "O4"),
@@ -72,46 +74,46 @@ def test_fields_take_units(bench: Workbench) -> None:
 
 
 def test_an_output_is_added_or_refused_with_its_problem(bench: Workbench) -> None:
-    told = bench.handle(ask.AddOutput(name="reach", formula="hypot(P.x - A.x, P.y - A.y)"))
-    state = only(told, tell.FileState)
+    told = bench.handle(AddOutput(name="reach", formula="hypot(P.x - A.x, P.y - A.y)"))
+    state = only(told, FileState)
     assert (state.outputs, state.undo) == (("reach",), "add output reach")
-    told = bench.handle(ask.AddOutput(name="other", formula="hypot(Z.x, 0)"))
+    told = bench.handle(AddOutput(name="other", formula="hypot(Z.x, 0)"))
     assert '"Z.x" is not defined' in only(told, tell.ProblemsFound).problems[0].message
     assert bench.text == state.text
 
 
 def test_selections_are_copied_mirrored_and_renamed_in_one_step(bench: Workbench) -> None:
     before = bench.text
-    copy = ask.Duplicate(
+    copy = Duplicate(
         names={"O4": "O4", "B": "C", "rocker": "rocker2"}, places={"B": (160.0, -60.0)}
     )
-    state = only(bench.handle(copy), tell.FileState)
+    state = only(bench.handle(copy), FileState)
     assert state.undo == "duplicate O4, B, rocker"
     assert 'rocker2 = ["O4", "C"]' in state.text
     assert '"O4 C" = 80' in state.text
-    told = bench.handle(ask.Duplicate(names={"B": "crank"}, places={"B": (0.0, 0.0)}))
+    told = bench.handle(Duplicate(names={"B": "crank"}, places={"B": (0.0, 0.0)}))
     assert '"crank" is already in the file' in only(told, tell.Refused).message
-    state = only(bench.handle(ask.Undo()), tell.FileState)
+    state = only(bench.handle(ask.Undo()), FileState)
     assert state.text == before
-    state = only(bench.handle(ask.Rename(of="link", name="rocker", new="lever")), tell.FileState)
+    state = only(bench.handle(Rename(of="link", name="rocker", new="lever")), FileState)
     assert (state.undo, "lever" in [link.name for link in state.links]) == (
         "rename rocker as lever",
         True,
     )
     places = {name: (-x, y) for name, (x, y) in bench.cycle.subject.places().items()}
-    told = bench.handle(ask.Mirror(places=places))
-    assert only(told, tell.FileState).undo.startswith("mirror ")
+    told = bench.handle(Mirror(places=places))
+    assert only(told, FileState).undo.startswith("mirror ")
     assert only(told, tell.MotionFound).certified == 361
 
 
 def test_another_unit_is_one_step(bench: Workbench) -> None:
     before = bench.text
-    state = only(bench.handle(ask.ChangeUnits(length="in", convert=True)), tell.FileState)
+    state = only(bench.handle(ChangeUnits(length="in", convert=True)), FileState)
     assert (state.length_unit, state.undo) == ("in", "convert to in")
     assert number(state, "A B").value == pytest.approx(120 / 25.4, rel=1e-14)
-    state = only(bench.handle(ask.Undo()), tell.FileState)
+    state = only(bench.handle(ask.Undo()), FileState)
     assert state.text == before
-    state = only(bench.handle(ask.ChangeUnits(angle="rad", convert=False)), tell.FileState)
+    state = only(bench.handle(ChangeUnits(angle="rad", convert=False)), FileState)
     assert (state.angle_unit, state.undo) == ("rad", "relabel as rad")
 
 

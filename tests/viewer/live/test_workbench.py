@@ -12,13 +12,14 @@ import numpy as np
 import pytest
 
 import linkwork as lw
-from linkwork.mechanism.linkage import Linkage
-from linkwork.textfile.link import fragment_of
-from linkwork.viewer.embedding import embed_snippet
-from linkwork.viewer.live import events as tell, requests as ask
-from linkwork.viewer.live.mechanism_file import MechanismFile, blank_sheet
-from linkwork.viewer.live.workbench import Workbench
-from linkwork.viewer.qr_code import qr_svg
+from linkwork.app.live import events as tell, requests as ask
+from linkwork.app.live.file_state import ChangeableNumber, FileState
+from linkwork.app.live.mechanism_file import MechanismFile, blank_sheet
+from linkwork.app.live.whole_edits import Mirror
+from linkwork.app.live.workbench import Workbench
+from linkwork.app.pages.offline_page import embed_snippet, qr_svg
+from linkwork.core.mechanism.linkage import Linkage
+from linkwork.core.textfile.link import fragment_of
 from tests.described import described_as
 from tests.thinned import thinned
 from tests.viewer.live.conftest import FOUR_BAR
@@ -47,7 +48,7 @@ def line(text: str, start: str) -> int:
     return next(k for k, row in enumerate(text.splitlines(), 1) if row.startswith(start))
 
 
-def number(state: tell.FileState, name: str) -> tell.ChangeableNumber:
+def number(state: FileState, name: str) -> ChangeableNumber:
     return next(each for each in state.numbers if each.name == name)
 
 
@@ -66,7 +67,7 @@ def test_a_page_begins_with_the_file_and_its_cycle(bench: Workbench) -> None:
     palette, state, motion = bench.opened()
     assert isinstance(palette, tell.PaletteShown)
     assert [part.title for part in palette.parts] == TITLES
-    assert isinstance(state, tell.FileState)
+    assert isinstance(state, FileState)
     assert isinstance(motion, tell.MotionFound)
     assert (state.title, state.form, state.unsaved) == ("Four-bar", "points-and-links", False)
     assert state.text == FOUR_BAR
@@ -82,7 +83,7 @@ def test_a_page_begins_with_the_file_and_its_cycle(bench: Workbench) -> None:
 
 def test_a_dimension_changes_in_its_line_and_the_comment_stays(bench: Workbench) -> None:
     events = bench.handle(ask.SetNumber(name="a", value=42))
-    state = only(events, tell.FileState)
+    state = only(events, FileState)
     assert state.text == FOUR_BAR.replace("a = 40  # the crank", "a = 42  # the crank")
     assert state.unsaved
     longer = lw.loads(FOUR_BAR).with_dimensions(a=42).sweep()
@@ -91,7 +92,7 @@ def test_a_dimension_changes_in_its_line_and_the_comment_stays(bench: Workbench)
 
 
 def test_a_measured_length_becomes_a_given_one(bench: Workbench) -> None:
-    state = only(bench.handle(ask.SetNumber(name="P A", value=90)), tell.FileState)
+    state = only(bench.handle(ask.SetNumber(name="P A", value=90)), FileState)
     assert '"A P" = 90' in state.text
     assert number(state, "A P").table == "lengths"
 
@@ -101,12 +102,12 @@ def test_a_number_that_is_a_formula_is_not_written_over(bench: Workbench) -> Non
     assert refused.message == (
         '"O2 A" is the formula a: change a dimension in it, or send another formula'
     )
-    state = only(bench.handle(ask.SetNumber(name="O2 A", value="a + 1")), tell.FileState)
+    state = only(bench.handle(ask.SetNumber(name="O2 A", value="a + 1")), FileState)
     assert '"O2 A" = "a + 1"' in state.text
 
 
 def test_a_distance_on_ground_moves_its_pivot(bench: Workbench) -> None:
-    state = only(bench.handle(ask.SetNumber(name="O2 O4", value=110)), tell.FileState)
+    state = only(bench.handle(ask.SetNumber(name="O2 O4", value=110)), FileState)
     assert "O4 = [110, 0]" in state.text
     assert '"O2 O4" = 110' in state.text
 
@@ -130,13 +131,13 @@ def test_what_cannot_be_added_is_told_without_a_line_that_the_file_lacks(bench: 
 
 
 def test_the_text_typed_by_hand_is_judged_by_the_reader(bench: Workbench) -> None:
-    found = only(bench.handle(ask.SetText(text=FOUR_BAR + "[lenghts]\n")), tell.FileState)
+    found = only(bench.handle(ask.SetText(text=FOUR_BAR + "[lenghts]\n")), FileState)
     assert [lack.line for lack in found.lacks] == [len(FOUR_BAR.splitlines()) + 1]
-    assert only(bench.handle(ask.Undo()), tell.FileState).lacks == ()
+    assert only(bench.handle(ask.Undo()), FileState).lacks == ()
     broken = only(bench.handle(ask.SetText(text="format = ")), tell.ProblemsFound)
     assert "is not TOML" in broken.problems[0].message
     whole = FOUR_BAR.replace('"A B" = 120', '"A B" = 125')
-    assert only(bench.handle(ask.SetText(text=whole)), tell.FileState).text == whole
+    assert only(bench.handle(ask.SetText(text=whole)), FileState).text == whole
 
 
 def test_dragging_gives_cycles_and_one_step_of_history(bench: Workbench) -> None:
@@ -152,11 +153,11 @@ def test_dragging_gives_cycles_and_one_step_of_history(bench: Workbench) -> None
         exact["rocker"],
         rtol=1e-7,  # told to seven digits
     )
-    state = only(bench.handle(ask.SetNumber(name="A B", value=126)), tell.FileState)
+    state = only(bench.handle(ask.SetNumber(name="A B", value=126)), FileState)
     assert state.undo == "A B = 126"
-    back = only(bench.handle(ask.Undo()), tell.FileState)
+    back = only(bench.handle(ask.Undo()), FileState)
     assert (back.text, back.undo, back.redo) == (FOUR_BAR, "", "A B = 126")
-    assert '"A B" = 126' in only(bench.handle(ask.Redo()), tell.FileState).text
+    assert '"A B" = 126' in only(bench.handle(ask.Redo()), FileState).text
 
 
 def test_rates_of_points_are_left_out_during_a_drag_that_does_not_show_them(
@@ -181,11 +182,11 @@ def test_rates_of_points_are_left_out_during_a_drag_that_does_not_show_them(
 def test_a_drag_that_is_never_let_go_is_kept(bench: Workbench) -> None:
     bench.handle(ask.SetNumber(name="A B", value=121, live=True))
     bench.handle(ask.SetNumber(name="O4 B", value=82, live=True))
-    state = only(bench.handle(ask.SetNumber(name="a", value=41)), tell.FileState)
+    state = only(bench.handle(ask.SetNumber(name="a", value=41)), FileState)
     assert '"A B" = 121' in state.text
     assert '"O4 B" = 82' in state.text
     for text in ("a = 40", '"O4 B" = 80', '"A B" = 120'):
-        assert text in only(bench.handle(ask.Undo()), tell.FileState).text
+        assert text in only(bench.handle(ask.Undo()), FileState).text
 
 
 def test_a_drag_that_is_refused_stays_where_it_was_good(bench: Workbench) -> None:
@@ -195,7 +196,7 @@ def test_a_drag_that_is_refused_stays_where_it_was_good(bench: Workbench) -> Non
     assert kinds(bench.handle(ask.SetNumber(name="A B", value=123, live=True))) == ["MotionFound"]
     events = bench.handle(ask.SetNumber(name="A B", value=0))
     assert kinds(events) == ["ProblemsFound", "FileState", "MotionFound"]
-    assert '"A B" = 123' in only(events, tell.FileState).text
+    assert '"A B" = 123' in only(events, FileState).text
 
 
 def test_a_cycle_that_was_given_up_is_made_good(bench: Workbench) -> None:
@@ -216,7 +217,7 @@ def test_questions_do_not_end_a_drag(bench: Workbench) -> None:
     bench.handle(ask.SolveAt(at={}))
     bench.handle(ask.SetNumber(name="A B", value=123, live=True))
     bench.handle(ask.SetNumber(name="A B", value=124))
-    assert only(bench.handle(ask.Undo()), tell.FileState).text == FOUR_BAR
+    assert only(bench.handle(ask.Undo()), FileState).text == FOUR_BAR
 
 
 def test_dead_points_appear_while_a_length_is_dragged(bench: Workbench) -> None:
@@ -270,7 +271,7 @@ def test_a_position_beyond_reach_shows_what_is_missing(bench: Workbench) -> None
 
 def test_a_moved_point_takes_measured_lengths_along(bench: Workbench) -> None:
     events = bench.handle(ask.MovePoint(point="P", x=95, y=100))
-    moved, state = only(events, tell.PointMoved), only(events, tell.FileState)
+    moved, state = only(events, tell.PointMoved), only(events, FileState)
     assert set(moved.followed) == {"A P", "B P"}
     assert moved.stayed == ()
     assert "P = [95, 100]" in state.text
@@ -283,7 +284,7 @@ def test_given_lengths_stay_when_a_point_is_moved_and_it_is_said_which(bench: Wo
     moved = only(events, tell.PointMoved)
     assert moved.stayed == ("A B", "O4 B")
     assert moved.followed == ("B P",)
-    assert '"A B" = 120' in only(events, tell.FileState).text
+    assert '"A B" = 120' in only(events, FileState).text
 
 
 def test_given_lengths_follow_a_point_on_request_but_for_formulas(bench: Workbench) -> None:
@@ -295,7 +296,7 @@ def test_given_lengths_follow_a_point_on_request_but_for_formulas(bench: Workben
     assert "A B" in moved.followed
     # measured to where the neighbour really is, not to where it was sketched
     wanted = math.dist((30, 30), start.points["B"])
-    state = only(bench.opened(), tell.FileState)
+    state = only(bench.opened(), FileState)
     assert number(state, "A B").value == pytest.approx(wanted, rel=1e-9)
     assert wanted != pytest.approx(120, rel=1e-3)
 
@@ -306,7 +307,7 @@ def test_a_ground_point_that_contradicts_its_length_is_refused_by_the_reader(
     found = only(bench.handle(ask.MovePoint(point="O4", x=105, y=0)), tell.ProblemsFound)
     assert "ground coordinates are exact" in found.problems[0].message
     follows = bench.handle(ask.MovePoint(point="O4", x=105, y=0, lengths_follow=True))
-    assert '"O2 O4" = 105' in only(follows, tell.FileState).text
+    assert '"O2 O4" = 105' in only(follows, FileState).text
 
 
 def test_links_are_added_together_with_their_points(bench: Workbench) -> None:
@@ -321,7 +322,7 @@ def test_links_are_added_together_with_their_points(bench: Workbench) -> None:
         )
     )
     events = bench.handle(dyad)
-    state = only(events, tell.FileState)
+    state = only(events, FileState)
     assert {"bar", "swing"} < {link.name for link in state.links}
     assert 'ground = ["O2", "O4", "O6"]' in state.text
     assert only(events, tell.MotionFound).rows >= 361
@@ -333,19 +334,19 @@ def test_links_are_added_together_with_their_points(bench: Workbench) -> None:
             ask.RemovePoint(name="O6"),
         )
     )
-    back = only(bench.handle(removed), tell.FileState)
+    back = only(bench.handle(removed), FileState)
     assert {link.name for link in back.links} == {"ground", "crank", "coupler", "rocker"}
 
 
 def test_lengths_go_with_the_link_that_had_them(bench: Workbench) -> None:
     edits = (ask.RemoveLink(name="rocker"), ask.AddLink(name="lever", points=("O4", "B")))
-    state = only(bench.handle(ask.Together(edits=edits)), tell.FileState)
+    state = only(bench.handle(ask.Together(edits=edits)), FileState)
     assert '"O4 B" = 80' not in state.text
     assert '"A B" = 120' in state.text
 
 
 def test_joints_sliders_and_gears_come_and_go(bench: Workbench) -> None:
-    loose = only(bench.handle(ask.RemoveJoint(link="coupler", point="A")), tell.FileState)
+    loose = only(bench.handle(ask.RemoveJoint(link="coupler", point="A")), FileState)
     assert loose.lacks
     bench.handle(ask.Undo())
     wheels: dict[str, str | tuple[str, ...]] = {
@@ -367,11 +368,11 @@ def test_joints_sliders_and_gears_come_and_go(bench: Workbench) -> None:
             ask.AddPart(table="gears", typed={**wheels, "wheels": ("crank", "pinion")}),
         )
     )
-    state = only(bench.handle(crank), tell.FileState)
+    state = only(bench.handle(crank), FileState)
     assert 'wheels = ["crank", "pinion"]' in state.text
     assert state.parts == ("g",)
     gone = ask.Together(edits=(ask.RemovePart(name="g"), ask.RemoveLink(name="pinion")))
-    left = only(bench.handle(gone), tell.FileState)
+    left = only(bench.handle(gone), FileState)
     assert "[[gears]]" not in left.text
     assert left.parts == ()
 
@@ -399,9 +400,9 @@ def test_a_slider_is_added(tmp_path: Path) -> None:
             ),
         )
     )  # fmt: skip
-    state = only(bench.handle(swap), tell.FileState)
+    state = only(bench.handle(swap), FileState)
     assert number(state, "t.offset").value == 5.0
-    changed = only(bench.handle(ask.SetNumber(name="t.offset", value=7)), tell.FileState)
+    changed = only(bench.handle(ask.SetNumber(name="t.offset", value=7)), FileState)
     assert "offset = 7" in changed.text
 
 
@@ -430,13 +431,13 @@ def test_nothing_is_put_elsewhere_where_points_follow_from_equations(tmp_path: P
 def test_a_point_with_locked_lengths_moves_on_their_circles(bench: Workbench) -> None:
     edit = ask.MovePoints(places={"P": (100.0, 150.0)}, keep=("B P", "P gone", "P"))
     b, p = (complex(*bench._before().places[name]) for name in ("B", "P"))
-    state = only(bench.handle(edit), tell.FileState)
+    state = only(bench.handle(edit), FileState)
     moved = complex(*state.points["P"])
     assert abs(moved - b) == pytest.approx(abs(p - b), rel=1e-9)
     assert abs(moved - p) > 1
     here = complex(*bench._before().places["P"])
     both = ask.MovePoints(places={"P": (0.0, 0.0)}, keep=("B P", "A P"))
-    there = complex(*only(bench.handle(both), tell.FileState).points["P"])
+    there = complex(*only(bench.handle(both), FileState).points["P"])
     assert there == pytest.approx(here, rel=1e-9)  # there is no other place on both circles
 
 
@@ -447,19 +448,19 @@ def test_a_view_has_a_width(width: float, bench: Workbench) -> None:
 
 
 def test_links_are_reversed_and_points_moved_together(bench: Workbench) -> None:
-    state = only(bench.handle(ask.ReverseLink(name="rocker")), tell.FileState)
+    state = only(bench.handle(ask.ReverseLink(name="rocker")), FileState)
     assert 'rocker = ["B", "O4"]' in state.text
     places = {"O2": (10.0, 0.0), "O4": (110.0, 0.0)}
-    state = only(bench.handle(ask.MovePoints(places=places)), tell.FileState)
+    state = only(bench.handle(ask.MovePoints(places=places)), FileState)
     assert state.points["O2"] == (10.0, 0.0)
     assert '"O2 O4" = 100' in state.text
 
 
 def test_the_path_of_a_point_is_asked_for(bench: Workbench) -> None:
-    on = only(bench.handle(ask.TracePoint(point="B", on=True)), tell.FileState)
+    on = only(bench.handle(ask.TracePoint(point="B", on=True)), FileState)
     assert (on.traced, on.traceable) == (("P", "B"), ("O2", "A", "B", "O4", "P"))
     for point in ("P", "B"):
-        off = only(bench.handle(ask.TracePoint(point=point, on=False)), tell.FileState)
+        off = only(bench.handle(ask.TracePoint(point=point, on=False)), FileState)
     assert off.traced == ()
     assert "[trace]" not in off.text
     wrong = only(bench.handle(ask.TracePoint(point="Z", on=True)), tell.Refused)
@@ -470,14 +471,14 @@ def test_a_number_takes_the_place_of_a_formula_if_that_is_meant(bench: Workbench
     refused = only(bench.handle(ask.SetNumber(name="O2 A", value=45)), tell.Refused)
     assert "is the formula a" in refused.message
     edit = ask.SetNumber(name="O2 A", value=45, any_formula=True)
-    assert '"O2 A" = 45' in only(bench.handle(edit), tell.FileState).text
+    assert '"O2 A" = 45' in only(bench.handle(edit), FileState).text
 
 
 def test_something_else_is_driven(bench: Workbench) -> None:
-    state = only(bench.opened(), tell.FileState)
+    state = only(bench.opened(), FileState)
     drives = [(drive.kind, drive.name) for drive in state.drives]
     assert drives == [("link", "crank"), ("link", "coupler"), ("link", "rocker")]
-    state = only(bench.handle(ask.SetInput(drive="link", name="rocker")), tell.FileState)
+    state = only(bench.handle(ask.SetInput(drive="link", name="rocker")), FileState)
     assert [(one.drive, one.name) for one in state.inputs] == [("link", "rocker")]
 
 
@@ -494,10 +495,10 @@ def test_the_guess_is_dragged_by_a_point(bench: Workbench) -> None:
 
 def test_the_input_is_set(bench: Workbench) -> None:
     events = bench.handle(ask.SetInput(start=30, stop=90, step=2, speed="300 rpm"))
-    state, motion = only(events, tell.FileState), only(events, tell.MotionFound)
+    state, motion = only(events, FileState), only(events, tell.MotionFound)
     assert (state.inputs[0].start, state.inputs[0].stop, motion.rows) == (30, 90, 31)
     assert state.inputs[0].speed == "300 rpm"
-    other = only(bench.handle(ask.SetInput(drive="link", name="rocker")), tell.FileState)
+    other = only(bench.handle(ask.SetInput(drive="link", name="rocker")), FileState)
     assert other.inputs[0].name == "rocker"
     refused = only(bench.handle(ask.SetInput(drive="wheel", name="rocker")), tell.Refused)
     assert refused.message.startswith('"wheel" cannot be driven (kinds: link, joint, slider,')
@@ -516,13 +517,12 @@ def test_a_configuration_is_listed_and_chosen(bench: Workbench) -> None:
     assert [way.name for way in found.ways] == ["open", "crossed"]
     open_, crossed = (way.points["B"] for way in found.ways)
     assert math.dist(open_, crossed) > 10
-    state = only(bench.handle(ask.ChooseConfiguration(name="crossed")), tell.FileState)
+    state = only(bench.handle(ask.ChooseConfiguration(name="crossed")), FileState)
     assert state.configuration == "crossed"
     position = only(bench.handle(ask.SolveAt(at={})), tell.PositionFound)
     assert position.points["B"] == pytest.approx(crossed)
     assert (
-        "configuration"
-        not in only(bench.handle(ask.ChooseConfiguration(name="")), tell.FileState).text
+        "configuration" not in only(bench.handle(ask.ChooseConfiguration(name="")), FileState).text
     )
 
 
@@ -586,7 +586,7 @@ def test_points_of_equations_cannot_be_dragged(tmp_path: Path) -> None:
     bench = Workbench(MechanismFile(file), lw.loads)
     refused = only(bench.handle(ask.MovePoint(point="A", x=0, y=0)), tell.Refused)
     assert refused.message.startswith("the points of this file follow from its equations")
-    state = only(bench.handle(ask.SetNumber(name="theta13", value=190)), tell.FileState)
+    state = only(bench.handle(ask.SetNumber(name="theta13", value=190)), FileState)
     assert '"θ13" = 190' in state.text
 
 
@@ -596,7 +596,7 @@ def test_every_mechanism_of_the_library_opens_and_is_edited(name: str, tmp_path:
     file.write_text(lw.example_text(name), encoding="utf-8")
     bench = Workbench(MechanismFile(file), lw.loads)
     state = bench.opened()[1]
-    assert isinstance(state, tell.FileState)
+    assert isinstance(state, FileState)
     assert state.equations or name in NO_LOOP
     plain = [n for n in state.numbers if not n.formula and n.table not in ("points", "guess")]
     for each in plain[:1]:
@@ -620,7 +620,7 @@ def test_saving_writes_the_text_and_nothing_else(bench: Workbench, path: Path) -
     assert path.read_text(encoding="utf-8") == FOUR_BAR
     events = bench.handle(ask.Save())
     assert kinds(events) == ["Saved", "FileState"]
-    assert not only(events, tell.FileState).unsaved
+    assert not only(events, FileState).unsaved
     assert path.read_text(encoding="utf-8") == bench.text
     assert [p.name for p in path.parent.iterdir()] == ["four-bar.toml"]
     assert bench.poll() == []  # what was written here is no news
@@ -642,10 +642,10 @@ def test_a_change_on_disk_is_picked_up(bench: Workbench, path: Path) -> None:
     events = bench.poll()
     assert kinds(events) == ["FileChanged", "FileState", "MotionFound"]
     assert only(events, tell.FileChanged).reloaded
-    assert only(events, tell.FileState).text == OTHER
+    assert only(events, FileState).text == OTHER
     assert not bench.unsaved
     assert bench.poll() == []
-    assert only(bench.handle(ask.Undo()), tell.FileState).text == FOUR_BAR  # nothing is lost
+    assert only(bench.handle(ask.Undo()), FileState).text == FOUR_BAR  # nothing is lost
 
 
 def test_a_new_date_alone_is_no_change(bench: Workbench, path: Path) -> None:
@@ -674,9 +674,9 @@ def test_a_conflict_can_be_ended_by_reloading(bench: Workbench, path: Path) -> N
     bench.handle(ask.SetNumber(name="a", value=42))
     touch_later(path, OTHER)
     bench.poll()
-    state = only(bench.handle(ask.Reload()), tell.FileState)
+    state = only(bench.handle(ask.Reload()), FileState)
     assert (state.text, state.unsaved) == (OTHER, False)
-    assert "a = 42" in only(bench.handle(ask.Undo()), tell.FileState).text
+    assert "a = 42" in only(bench.handle(ask.Undo()), FileState).text
 
 
 def test_saving_sees_a_change_that_nobody_polled(bench: Workbench, path: Path) -> None:
@@ -700,7 +700,7 @@ def test_a_broken_file_on_disk_leaves_the_picture_and_is_explained(
     assert only(bench.handle(ask.Save()), tell.Refused)  # it would undo what is being written
     os.utime(path, ns=(1, 1))
     touch_later(path, OTHER)  # mended
-    assert only(bench.poll(), tell.FileState).text == OTHER
+    assert only(bench.poll(), FileState).text == OTHER
 
 
 def test_a_file_that_is_removed_is_said_and_can_be_written_again(
@@ -750,11 +750,11 @@ def test_a_file_that_is_no_mechanism_is_opened_and_mended(
     file = tmp_path / "broken.toml"
     file.write_text(text, encoding="utf-8")
     bench = Workbench(MechanismFile(file), lw.loads)
-    state = only(bench.opened(), tell.FileState)
+    state = only(bench.opened(), FileState)
     assert (state.text, state.readable) == (text, readable)
     assert state.lacks
     assert only(bench.handle(ask.SolveAt(at={})), tell.Refused)
-    assert only(bench.handle(ask.SetText(text=FOUR_BAR)), tell.FileState).lacks == ()
+    assert only(bench.handle(ask.SetText(text=FOUR_BAR)), FileState).lacks == ()
 
 
 def test_entries_of_a_text_that_is_not_toml_cannot_be_edited(tmp_path: Path) -> None:
@@ -762,7 +762,7 @@ def test_entries_of_a_text_that_is_not_toml_cannot_be_edited(tmp_path: Path) -> 
     file.write_text("format = 1\n[points]\nA = [0; 0]\n", encoding="utf-8")
     bench = Workbench(MechanismFile(file), lw.loads)
     point = ask.AddPoint(name="B", x=0.0, y=1.0)
-    for edit in (point, ask.Mirror(places={}), ask.Together(edits=(point,))):
+    for edit in (point, Mirror(places={}), ask.Together(edits=(point,))):
         message = only(bench.handle(edit), tell.Refused).message
         assert message.startswith("correct the text first: line 3 is not TOML: unclosed array")
 
@@ -772,7 +772,7 @@ def test_a_question_that_is_wrong_is_listed_without_a_thing_to_remove(tmp_path: 
     question = '[[questions]]\ntext = "How far?"\nanswer = "stroke(X.x)"\ntolerance = 1\n'
     path.write_text(FOUR_BAR + question, encoding="utf-8")
     bench = Workbench(MechanismFile(path), lw.loads)
-    (lack,) = only(bench.opened(), tell.FileState).lacks
+    (lack,) = only(bench.opened(), FileState).lacks
     assert (lack.kind, lack.remedies) == ("", ())
     assert lack.key == "questions[1].answer"
 
@@ -784,13 +784,13 @@ def test_a_missing_or_empty_file_is_a_blank_sheet(content: str | None, tmp_path:
         path.write_text(content, "utf-8")
     bench = Workbench(MechanismFile(path, blank_sheet("new")), lw.loads)
     state, shown = bench.opened()[1:]
-    assert isinstance(state, tell.FileState)
+    assert isinstance(state, FileState)
     assert isinstance(shown, tell.SketchShown)
     assert (state.title, state.points, state.unsaved) == ("new", {}, False)
     assert [lack.message[:20] for lack in state.lacks] == ["Draw the first link:"]
     assert bench.poll() == []
     bench.handle(ask.AddPoint(name="A", x=1, y=2))
-    assert only(bench.handle(ask.Save()), tell.FileState).unsaved is False
+    assert only(bench.handle(ask.Save()), FileState).unsaved is False
     assert "A = [1.0, 2.0]" in path.read_text("utf-8")
 
 
@@ -800,17 +800,17 @@ def test_a_mechanism_is_drawn_step_by_step(tmp_path: Path) -> None:
     for name, (x, y) in places.items():
         bench.handle(ask.AddPoint(name=name, x=x, y=y))
     for name, points in {"crank": ("A", "B"), "coupler": ("B", "C"), "rocker": ("D", "C")}.items():
-        state = only(bench.handle(ask.AddLink(name=name, points=points)), tell.FileState)
+        state = only(bench.handle(ask.AddLink(name=name, points=points)), FileState)
     (fixed,) = (remedy for lack in state.lacks for remedy in lack.remedies)
     assert fixed.label == "Fix A and D"
-    state = only(bench.handle(ask.Together(edits=fixed.edits)), tell.FileState)
+    state = only(bench.handle(ask.Together(edits=fixed.edits)), FileState)
     driven, *_ = (remedy for lack in state.lacks for remedy in lack.remedies)
     assert driven.label == "Drive crank"
     events = bench.handle(ask.Together(edits=driven.edits))
-    assert only(events, tell.FileState).lacks == ()
+    assert only(events, FileState).lacks == ()
     assert only(events, tell.MotionFound).certified == 361
     for _ in range(9):
-        assert only(bench.handle(ask.Undo()), tell.FileState).lacks
+        assert only(bench.handle(ask.Undo()), FileState).lacks
     assert only(bench.handle(ask.Undo()), tell.Refused)
 
 
@@ -821,11 +821,11 @@ def test_a_five_bar_is_driven_at_both_cranks(tmp_path: Path) -> None:
         bench.handle(ask.AddPoint(name=name, x=x, y=y))
     for k, points in enumerate(("AB", "BC", "CD", "DF")):
         edit = ask.AddLink(name=f"link{k + 2}", points=tuple(points))
-        state = only(bench.handle(edit), tell.FileState)
+        state = only(bench.handle(edit), FileState)
     for wanted in ("Fix A and F", "Drive link2", "Drive link5"):
         remedies = {r.label: r for lack in state.lacks for r in lack.remedies}
         events = bench.handle(ask.Together(edits=remedies[wanted].edits))
-        state = only(events, tell.FileState)
+        state = only(events, FileState)
     assert state.lacks == ()
     assert [one.name for one in state.inputs] == ["link2", "link5"]
     assert only(events, tell.MotionFound).certified > 0
@@ -864,7 +864,7 @@ def test_a_point_without_a_value_is_refused_and_one_in_a_file_is_shown(bench: Wo
     assert isinstance(refused, tell.Refused)
     assert '"O2" is not defined' in refused.message
     state, *_ = bench.handle(ask.SetText(text=bench.text.replace("P = [90, 90]", 'P = [90, "O2"]')))
-    assert isinstance(state, tell.FileState)
+    assert isinstance(state, FileState)
     assert '"O2" is not defined' in state.lacks[0].message
     assert "P.y" not in {number.name for number in state.numbers}
 
@@ -879,5 +879,5 @@ def test_inputs_with_laws_are_shown_as_one_table_of_times(tmp_path: Path) -> Non
     path = tmp_path / "arm.toml"
     path.write_text(head + laws, encoding="utf-8")
     opened = Workbench(MechanismFile(path), lw.loads).opened()
-    (shown,) = only(opened, tell.FileState).inputs
+    (shown,) = only(opened, FileState).inputs
     assert (shown.name, shown.start, shown.stop, shown.rows) == ("t", 0.0, 1.0, 5)

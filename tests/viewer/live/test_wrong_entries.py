@@ -7,9 +7,11 @@ from pathlib import Path
 import pytest
 
 import linkwork as lw
-from linkwork.viewer.live import events as tell, requests as ask
-from linkwork.viewer.live.mechanism_file import MechanismFile
-from linkwork.viewer.live.workbench import Workbench
+from linkwork.app.live import events as tell, requests as ask
+from linkwork.app.live.file_state import FileState
+from linkwork.app.live.mechanism_file import MechanismFile
+from linkwork.app.live.whole_edits import Duplicate, Mirror
+from linkwork.app.live.workbench import Workbench
 from tests.viewer.live.conftest import FOUR_BAR
 
 WRONG = {
@@ -23,8 +25,8 @@ WRONG = {
     "a missing point": '[links]\ncrank = ["O2", "A", "Q"]',
 }
 EDITS = (
-    ask.Duplicate(names={"A": "B", "crank": "bar"}, places={"A": (5.0, 5.0)}, mirrored=True),
-    ask.Mirror(places={"A": (-4.0, 3.0), "O2": (0.0, 0.0)}),
+    Duplicate(names={"A": "B", "crank": "bar"}, places={"A": (5.0, 5.0)}, mirrored=True),
+    Mirror(places={"A": (-4.0, 3.0), "O2": (0.0, 0.0)}),
     ask.RemovePart(name="s", whole=True),
     ask.TracePoint(point="A", on=True),
     ask.RemovePoint(name="O2"),
@@ -53,7 +55,7 @@ def test_what_is_wrong_stays_and_the_rest_is_edited_or_the_edit_is_refused(
 
 def test_a_link_that_cannot_be_drawn_is_removed_by_its_remedy(tmp_path: Path) -> None:
     bench = opened(FOUR_BAR.replace("[links]", "[links]\nx = 1"), tmp_path)
-    state = next(e for e in bench.opened() if isinstance(e, tell.FileState))
+    state = next(e for e in bench.opened() if isinstance(e, FileState))
     (lack,) = state.lacks
     assert (lack.key, lack.kind) == ("links.x", "")  # nothing to go to
     bench.handle(ask.Together(edits=lack.remedies[0].edits))

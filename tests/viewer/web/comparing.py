@@ -7,8 +7,8 @@ from typing import Any
 
 import numpy as np
 
-from linkwork.foundation.arrays import Array, BoolArray
-from linkwork.viewer.page_data import PackedColumn
+from linkwork.app.pages.page_data import PackedColumn
+from linkwork.core.foundation.arrays import Array, BoolArray
 from tests.viewer.unpacking import unpacked
 
 __all__ = ["differences"]

@@ -21,10 +21,9 @@ import pytest
 
 import linkwork as lw
 from linkwork.api import example_text
-from linkwork.design.synthesis.solving import solve_task
-from linkwork.viewer.live.browser_desk import BrowserDesk
-from linkwork.viewer.web.pyodide_files import pyodide_files
-from linkwork.viewer.web.web_app import web_folder
+from linkwork.app.live.browser_desk import BrowserDesk
+from linkwork.app.web.web_app import pyodide_files, web_folder
+from linkwork.synthesis.solvers.solving import solve_task
 from tests.library_mechanisms import driven_examples
 from tests.viewer.web.comparing import differences
 

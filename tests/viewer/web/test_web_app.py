@@ -16,12 +16,17 @@ from pathlib import Path
 import pytest
 from click.testing import CliRunner, Result
 
-from linkwork.cli.main import linkwork
-from linkwork.foundation.errors import InputError
-from linkwork.viewer.web import pyodide_files as module
-from linkwork.viewer.web.pyodide_files import PyodideFiles, pyodide_files
-from linkwork.viewer.web.site_packages import late_files, site_packages
-from linkwork.viewer.web.web_app import web_folder, web_page
+from linkwork.app.web import web_app as module
+from linkwork.app.web.web_app import (
+    PyodideFiles,
+    late_files,
+    pyodide_files,
+    site_packages,
+    web_folder,
+    web_page,
+)
+from linkwork.core.commands.main import linkwork
+from linkwork.core.foundation.errors import InputError
 
 
 def _wheel(**files: str) -> bytes:
@@ -131,7 +136,9 @@ def test_the_archive_holds_what_runs_and_no_more() -> None:
     assert {"numpy/init.py", "tomlkit/init.py", "platformdirs/init.py"} <= names
     assert {"linkwork/__init__.py", "linkwork/library/four-bar.toml"} <= names
     assert not any("tests" in name or name.endswith(".pyi") for name in names)
-    assert not any(name.startswith(("linkwork/cli", "linkwork/viewer/web")) for name in names)
+    assert not any(
+        name.startswith(("linkwork/core/commands", "linkwork/app/web")) for name in names
+    )
     assert {name for name in names if name.endswith("/offline.js")}  # of pages that it exports
     assert not any("__pycache__" in name or ".nbi" in name for name in names)
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from linkwork.foundation.lazy import loader
+from linkwork.core.foundation.loading import loader
 
 if TYPE_CHECKING:
     from linkwork.api.solving.solver_page import solving_page as solving_page

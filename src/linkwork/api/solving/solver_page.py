@@ -6,37 +6,36 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from linkwork.batch.printed_solver import PrintedSolver, print_solver
-from linkwork.batch.recorded_design import RecordedDesign
-from linkwork.drawing.moving_scene import MovingScene, moving_scene
-from linkwork.foundation.angles import FULL_TURN
-from linkwork.foundation.arrays import Array
-from linkwork.foundation.rounding import UNIT_ROUNDOFF
-from linkwork.kernels.march.march_programs import NODES
-from linkwork.kernels.march.step_control import START_STEPS, STEPS
-from linkwork.kernels.march.sweep_kernel import Steps
-from linkwork.kernels.program.languages import JAVASCRIPT
-from linkwork.marching.prediction import FAR, SAME
-from linkwork.marching.step_size import GROWTH, HALF, NEARLY_FULL
-from linkwork.motion.tracking import turns_freely
-from linkwork.results.motion import Motion
-from linkwork.viewer.packing import unpressed
-from linkwork.viewer.page_columns import usual_columns
-from linkwork.viewer.page_data import (
+from linkwork.app.pages.packing import (
+    anchors_of,
+    frames_of,
+    tracks_of,
+    turn_source,
+    unlike_parts,
+    unpressed,
+    used_turns,
+)
+from linkwork.app.pages.page_building import usual_columns
+from linkwork.app.pages.page_data import (
     PackedColumn,
     SliderData,
     SolverData,
     SolvingPage,
     StepRules,
 )
-from linkwork.viewer.part_anchors import (
-    anchors_of,
-    frames_of,
-    tracks_of,
-    turn_source,
-    unlike_parts,
-    used_turns,
-)
+from linkwork.core.drawing.moving_scene import MovingScene, moving_scene
+from linkwork.core.foundation.arrays import Array
+from linkwork.core.foundation.rounding import UNIT_ROUNDOFF
+from linkwork.core.foundation.units import FULL_TURN
+from linkwork.core.motion.following import turns_freely
+from linkwork.core.numerics.marching import FAR, GROWTH, HALF, NEARLY_FULL, SAME
+from linkwork.core.record.printing import JAVASCRIPT
+from linkwork.core.results.motion import Motion
+from linkwork.families.march.march_programs import NODES
+from linkwork.families.march.step_trial import START_STEPS, STEPS
+from linkwork.families.march.sweep_kernel import Steps
+from linkwork.families.printed_solver import PrintedSolver, print_solver
+from linkwork.families.recorded_design import RecordedDesign
 
 __all__ = ["solving_page"]
 

@@ -1,35 +1,175 @@
-"""Numbers that remember how they were computed, so that a result has exact derivatives.
+"""The derivatives of functions of NumPy: from the value and the arguments, dz = a dx + b conj(dx).
 
-The equations of a mechanism and its quantities are written for floats and arrays. A taped number
-passes through the same code and records every operation with its local derivatives. The record then
-gives the derivatives of all results by one number (forward), or of one result by all numbers
-(backward, the adjoint), at the cost of a few evaluations.
-
-A complex number depends on others by dz = a dx + b conj(dx), so that conjugates, moduli and
-directions of vectors need no separate treatment.
-
-References
-----------
-A. Griewank, A. Walther, Evaluating Derivatives, 2nd ed., SIAM 2008, chapter 3.
+Where a function has a corner or no value, its derivative is NaN.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from functools import partial, reduce
+from functools import partial, partialmethod, reduce
 from math import isfinite
-from typing import Any, cast
+from typing import Any, NoReturn, cast
 
 import numpy as np
 
-from linkwork.design.derivatives.derivative_rules import PLAIN, RULES, Partial, carried, one_sided
-from linkwork.expression.lane_functions import least, most
-from linkwork.foundation.arrays import AnyArray, Array, BoolArray
-from linkwork.foundation.lanes import Consensus, Lanes, Truths
-from linkwork.foundation.operand import NotElementwise
-from linkwork.foundation.rounding import RANK_TOLERANCE
+from linkwork.core.expression.values import least, most
+from linkwork.core.foundation.arrays import AnyArray, Array, BoolArray
+from linkwork.core.foundation.lanes import (
+    Consensus,
+    Lanes,
+    NotElementwise,
+    Truths,
+    remainders,
+    with_parts,
+)
+from linkwork.core.foundation.rounding import RANK_TOLERANCE
 
-__all__ = ["Tape", "TapedNumber", "is_still"]
+#: a and b for one argument; ``None`` if b is 0.
+Partial = tuple[Any, Any]
+#: Of the value and the arguments; ``None`` for an argument whose derivatives do not count.
+Rule = Callable[..., Sequence[Partial | None]]
+
+_NOTHING: Partial = (0.0, None)
+
+
+def _constant(*_: Any) -> Sequence[Partial | None]:
+    return (_NOTHING,)
+
+
+def carried(value: Any, _number: Any) -> Any:
+    """A value that keeps the derivatives of a number."""
+    return np.atleast_1d(value)
+
+
+def _power(z: Any, x: Any, y: Any) -> Sequence[Partial | None]:
+    # x to the power 0 is constant, also at 0
+    base = y * np.power(x, np.where(np.equal(y, 0), 1.0, y - 1.0))
+    positive = np.where(np.real(x) > 0.0, x, np.nan)
+    return (base, None), (z * np.log(positive), None)
+
+
+def _modulus(z: Any, x: Any) -> Sequence[Partial | None]:
+    if not np.iscomplexobj(x):
+        return ((np.where(np.equal(x, 0.0), np.nan, np.sign(x)), None),)
+    unit = x / np.where(z == 0.0, np.nan, z)
+    return ((0.5 * np.conj(unit), 0.5 * unit),)
+
+
+def one_sided(z: Any, x: Any) -> Sequence[Partial | None]:
+    """|x| with the derivative 1 at 0, where a sign of 1 belongs to it."""
+    if np.iscomplexobj(x):
+        return _modulus(z, x)
+    return ((np.copysign(1.0, x), None),)
+
+
+def _direction(_: Any, x: Any) -> Sequence[Partial | None]:
+    # d arg x = Im(dx / x)
+    a = -0.5j / np.where(np.equal(x, 0.0), np.nan, x)
+    return ((a, np.conj(a)),)
+
+
+def _hypot(z: Any, x: Any, y: Any) -> Sequence[Partial | None]:
+    size = np.where(z == 0.0, np.nan, z)
+    return (x / size, None), (y / size, None)
+
+
+def _arctan2(_: Any, y: Any, x: Any) -> Sequence[Partial | None]:
+    square = x * x + y * y
+    return (x / square, None), (-y / square, None)
+
+
+def _where(_: Any, mask: Any, x: Any, y: Any) -> Sequence[Partial | None]:
+    taken = np.asarray(mask, dtype=bool)
+    return _NOTHING, (np.where(taken, 1.0, 0.0), None), (np.where(taken, 0.0, 1.0), None)
+
+
+def _chosen(z: Any, x: Any, y: Any) -> Sequence[Partial | None]:
+    first, second = np.equal(z, x), np.equal(z, y)
+    # of two equal numbers either may be the larger one after a change
+    tie = np.where(first & second, np.nan, 1.0)
+    return (np.where(first, tie, 0.0), None), (np.where(second, tie, 0.0), None)
+
+
+def _copysign(_: Any, x: Any, sign: Any) -> Sequence[Partial | None]:
+    return (np.copysign(1.0, sign) * np.sign(x), None), _NOTHING
+
+
+def _remainder(z: Any, x: Any, period: Any) -> Sequence[Partial | None]:
+    return (1.0, None), (-np.round((x - z) / period), None)
+
+
+RULES: dict[Callable[..., Any], Rule] = {
+    np.add: lambda z, x, y: ((1.0, None), (1.0, None)),
+    np.subtract: lambda z, x, y: ((1.0, None), (-1.0, None)),
+    np.multiply: lambda z, x, y: ((y, None), (x, None)),
+    np.true_divide: lambda z, x, y: ((1.0 / np.asarray(y), None), (-z / y, None)),
+    np.power: _power,
+    np.negative: lambda z, x: ((-1.0, None),),
+    np.square: lambda z, x: ((2.0 * x, None),),
+    np.reciprocal: lambda z, x: ((-z * z, None),),
+    np.abs: _modulus,
+    np.fabs: _modulus,
+    np.angle: _direction,
+    np.real: lambda z, x: ((0.5, 0.5),),
+    np.imag: lambda z, x: ((-0.5j, 0.5j),),
+    np.conjugate: lambda z, x: ((0.0, 1.0),),
+    with_parts: lambda z, x, y: ((1.0, None), (1j, None)),
+    np.exp: lambda z, x: ((z, None),),
+    np.log: lambda z, x: ((1.0 / x, None),),
+    np.log10: lambda z, x: ((1.0 / (x * np.log(10.0)), None),),
+    np.sqrt: lambda z, x: ((0.5 / z, None),),
+    np.sin: lambda z, x: ((np.cos(x), None),),
+    np.cos: lambda z, x: ((-np.sin(x), None),),
+    np.tan: lambda z, x: ((1.0 + z * z, None),),
+    np.arcsin: lambda z, x: ((1.0 / np.sqrt(1.0 - x * x), None),),
+    np.arccos: lambda z, x: ((-1.0 / np.sqrt(1.0 - x * x), None),),
+    np.arctan: lambda z, x: ((1.0 / (1.0 + x * x), None),),
+    np.arctan2: _arctan2,
+    np.hypot: _hypot,
+    np.where: _where,
+    np.fmax: _chosen,
+    np.fmin: _chosen,
+    np.maximum: _chosen,
+    np.minimum: _chosen,
+    np.copysign: _copysign,
+    np.unwrap: lambda z, x: ((1.0, None),),
+    np.nan_to_num: lambda z, x: ((np.where(np.isfinite(x), 1.0, 0.0), None),),
+    remainders: _remainder,
+    carried: lambda z, x, y: (None, (1.0, None)),
+    **dict.fromkeys((np.sign, np.rint, np.round, np.floor, np.ceil), _constant),
+}
+
+#: Questions about each row.
+QUESTIONS: frozenset[Callable[..., Any]] = frozenset(
+    {
+        np.isfinite, np.isnan, np.logical_and, np.logical_or,
+        np.equal, np.not_equal, np.less, np.less_equal, np.greater, np.greater_equal,
+    }
+)  # fmt: skip
+
+#: Questions, and sizes that serve as tolerances.
+PLAIN: frozenset[Callable[..., Any]] = QUESTIONS | frozenset(
+    {
+        np.any, np.all, np.zeros_like, np.ones_like, np.iscomplexobj, np.nanmax, np.max, np.ndim,
+    }
+)  # fmt: skip
+
+
+# ----------------------------------------------------------------------
+# Numbers that remember how they were computed, so that a result has exact derivatives.
+#
+# The equations of a mechanism and its quantities are written for floats and arrays. A taped number
+# passes through the same code and records every operation with its local derivatives. The record
+# then gives the derivatives of all results by one number (forward), or of one result by all numbers
+# (backward, the adjoint), at the cost of a few evaluations.
+#
+# A complex number depends on others by dz = a dx + b conj(dx), so that conjugates, moduli and
+# directions of vectors need no separate treatment.
+#
+# References
+# ----------
+# A. Griewank, A. Walther, Evaluating Derivatives, 2nd ed., SIAM 2008, chapter 3.
+
 
 _OF_TWO: dict[Callable[..., Any], Any] = {least: np.minimum, most: np.maximum}
 _NEUTRAL: dict[object, float] = {np.add: 0.0, np.subtract: 0.0, np.multiply: 1.0}
@@ -380,3 +520,164 @@ class TapedNumber(Lanes):
 
 
 _HELD = (TapedNumber, Truths)
+
+
+# ----------------------------------------------------------------------
+# Equations written once, and computed again for the numbers of other designs.
+#
+# A recorded tape keeps every operation of the builder and every decision that it takes for the
+# mechanism as it is. Other designs follow the record; those in which a decision is another one have
+# other equations. What the builder does with values that it reads is no operation on the record, so
+# they cannot be read.
+
+
+_ELEMENTWISE = (QUESTIONS | RULES.keys()) - {np.unwrap}
+_Step = tuple[Callable[..., Any], Sequence[Any]]
+
+
+class RecordedTape(Tape):
+    """A tape of one mechanism, the leader of the designs that follow.
+
+    Raises
+    ------
+    NotElementwise
+        Where the builder does anything but operations and decisions with its numbers.
+    """
+
+    def __init__(self) -> None:
+        super().__init__(2)  # not shared: designs to come have other numbers
+        self.writing = True
+        #: How nodes that are no inputs are computed.
+        self._steps: dict[int, _Step] = {}
+        self._uses: dict[int, list[int]] = {}
+        self._decisions: list[tuple[int, bool]] = []
+        #: Numbers on which something depends because no input changes them.
+        self._steady: list[TapedNumber] = []
+        self._plan: list[tuple[int, bool, _Step]] = []
+        self._results: list[TapedNumber] = []
+
+    # Recording
+
+    def bare(self, number: Any) -> Any:
+        """The values of an operand."""
+        return number.own if isinstance(number, _RECORDED) else number
+
+    def _node(self, values: AnyArray, *links: Any) -> TapedNumber:
+        return _RecordedNumber(values, self, super()._node(values, *links).node)
+
+    def decidable(self, truths: AnyArray) -> Any:
+        """Truths with a node of their own."""
+        return _RecordedTruths(truths, self, self._node(truths, (), ()).node)
+
+    def computed(self, function: Callable[..., Any], given: Sequence[Any]) -> Any:
+        """The value of a function on the record."""
+        found = super().computed(function, given)
+        constants = [x for x in given if not isinstance(x, _RECORDED)]
+        if len(constants) == len(given):
+            return found
+        # arrays of constants may not fit to the number of designs
+        if function not in _ELEMENTWISE or any(np.ndim(x) for x in constants):
+            raise NotElementwise
+        if not isinstance(found, _RECORDED):
+            found = self._node(found, (), ())  # one of two constants
+        self._steps[found.node] = function, given
+        self._uses[found.node] = [x.node for x in given if isinstance(x, _RECORDED)]
+        return found
+
+    def combine(self, values: AnyArray, terms: Sequence[tuple[Any, Any]]) -> NoReturn:
+        """Not on the record: values that are computed elsewhere."""
+        raise NotElementwise
+
+    def decide(self, truths: Any) -> bool:
+        """A decision by truths on the record."""
+        if not isinstance(truths, _RecordedTruths):
+            raise NotElementwise
+        answer = bool(truths.own.item())
+        self._decisions.append((truths.node, answer))
+        return answer
+
+    def is_steady(self, number: Any) -> bool:
+        """Whether no input changes a number; designs that follow have to agree if it is so."""
+        found = super().is_steady(number)
+        if found and isinstance(number, _RecordedNumber):
+            self._steady.append(number)
+        return found
+
+    # Following
+
+    def keep(self, numbers: Sequence[TapedNumber]) -> None:
+        """End the record of what leads to numbers."""
+        self._results = [*self._steady, *numbers]
+        nodes = [number.node for number in self._results]
+        rated = set(self._needed(nodes))
+        wanted = self._needed([*nodes, *(node for node, _ in self._decisions)], self._uses)
+        self._plan = [(k, k in rated, self._steps[k]) for k in wanted if k in self._steps]
+
+    @np.errstate(all="ignore")
+    def follow(self, x: Array) -> tuple[BoolArray, list[tuple[AnyArray, AnyArray]]]:
+        """Which of D designs with inputs (P, D) follow the record in everything, (D,), and the kept
+        numbers: values (D,), and derivatives by the inputs, (P, D).
+        """
+        tape = Tape(x.shape[1])
+        tape.writing = True
+        found: dict[int, Any] = dict(zip(self.inputs, map(tape.number, x), strict=True))
+        for node, is_rated, (function, given) in self._plan:
+            own = [found[x.node] if isinstance(x, _RECORDED) else x for x in given]
+            # what decides only needs no derivatives
+            found[node] = tape.computed(function, own if is_rated else [*map(tape.bare, own)])
+        for node, answer in self._decisions:
+            tape.agreeing &= tape.bare(found[node]) == answer
+        results = [found[number.node] for number in self._results]
+        values, rates = [*map(tape.bare, results)], tape.forward(results)
+        steady = len(self._steady)
+        for value, rate in zip(values[:steady], rates[:steady], strict=True):
+            tape.agreeing &= is_still(value, rate)
+        kept = [
+            (np.broadcast_to(value, x.shape[1]), np.broadcast_to(rate, x.shape))
+            for value, rate in zip(values[steady:], rates[steady:], strict=True)
+        ]
+        return tape.agreeing, kept
+
+
+class _Unread:
+    """What is done with values that are read would not be on the record."""
+
+    __slots__ = ()
+
+    @property
+    def values(self) -> NoReturn:
+        raise NotElementwise
+
+
+class _RecordedNumber(_Unread, TapedNumber):  # type: ignore[misc]  # no values
+    """A number on a record."""
+
+    __slots__ = ("own",)
+
+    def __init__(self, values: AnyArray, record: RecordedTape, node: int) -> None:
+        self.own, self.arithmetic, self.node = values, record, node
+
+
+class _RecordedTruths(_Unread, Truths):  # type: ignore[misc]  # no values
+    """Truths on a record."""
+
+    __slots__ = ("node", "own")
+    consensus: RecordedTape
+    __hash__ = None
+
+    def __init__(self, values: AnyArray, record: RecordedTape, node: int) -> None:
+        self.own, self.consensus, self.node = values, record, node
+
+    def __bool__(self) -> bool:
+        return self.consensus.decide(self)
+
+    def _with(self, other: object, function: Callable[..., Any]) -> Any:
+        return self.consensus.apply(function, self, other)
+
+    __and__ = __rand__ = partialmethod(_with, function=np.logical_and)
+    __or__ = __ror__ = partialmethod(_with, function=np.logical_or)
+    __eq__ = partialmethod(_with, function=np.equal)
+    __ne__ = partialmethod(_with, function=np.not_equal)
+
+
+_RECORDED = (_RecordedNumber, _RecordedTruths)

@@ -1,0 +1,356 @@
+"""Requests from JSON, strictly, and events to JSON.
+
+A message is an object with its ``kind``, an optional integer ``id`` that the answers repeat, and
+the fields of its dataclass. A field that is missing, unknown, of another type, not finite or too
+long is rejected with its path in the message.
+"""
+
+from __future__ import annotations
+
+import dataclasses
+import json
+import math
+import re
+import types
+import typing
+from collections.abc import Iterator, Mapping
+from functools import cache
+from typing import Any, NoReturn
+
+from linkwork.app.live.events import EVENTS, Event
+from linkwork.app.live.requests import EDITS, REQUESTS, OpenFile, Request, SetText
+from linkwork.app.pages.page_data import PageData
+from linkwork.core.foundation.errors import InputError, choices
+
+#: Maximum size of a message [bytes]: a file of maximum size, escaped as JSON.
+LARGEST_MESSAGE = 2_500_000
+_LARGEST_ID = 2**53  # largest exact integer in JavaScript
+_LONGEST_TEXT = 1_000  # characters of a name or formula
+#: Characters of a whole file, as text or in base64.
+_LONGEST_FILES = {SetText: 1_000_000, OpenFile: 2_400_000}
+_MOST_ENTRIES = 1_000  # of a list or table
+_REQUESTS = frozenset(REQUESTS)
+
+
+class MessageError(InputError):
+    """A message that is not a valid request; ``id`` is that of the message, if readable."""
+
+    def __init__(self, message: str, id: int | None = None) -> None:
+        super().__init__(message)
+        self.id = id
+
+
+def kind_of(message: type) -> str:
+    """``SetNumber`` → ``set_number``."""
+    return _snake_case(message.__name__)
+
+
+@cache
+def _snake_case(name: str) -> str:
+    return re.sub(r"(?<!^)(?=[A-Z])", "_", name).lower()
+
+
+def decoded(text: str | bytes) -> tuple[Request, int | None]:
+    """The request in a JSON text, and its id.
+
+    Raises
+    ------
+    MessageError
+        If it is not a valid request; with problem and path.
+    """
+    data = _object(text)
+    number = _id(data.pop("id", None))
+    try:
+        return _message(data, REQUESTS, ""), number
+    except MessageError as error:
+        raise MessageError(str(error), number) from None
+
+
+def encoded(event: Event, answers: int | None = None) -> str:
+    """An event as JSON; ``answers`` is the id of its request."""
+    fields = {"kind": kind_of(type(event)), "answers": answers, **_own_fields(event)}
+    # in ASCII: a browser keeps other texts in twice the memory
+    return json.dumps(fields, allow_nan=False, separators=(",", ":"), default=_own_fields)
+
+
+def _own_fields(message: Any) -> dict[str, Any]:
+    """The fields of a dataclass, not copied: a cycle has thousands of numbers."""
+    own = vars(message)
+    # a remedy has the requests that the page sends back
+    return {"kind": kind_of(type(message)), **own} if type(message) in _REQUESTS else own
+
+
+def _refuse(message: str) -> NoReturn:
+    raise MessageError(message)
+
+
+def _object(text: str | bytes) -> dict[str, Any]:
+    size = len(text) if isinstance(text, bytes) else len(text.encode("utf-8", "surrogatepass"))
+    if size > LARGEST_MESSAGE:
+        _refuse(f"the message has {size} bytes: at most {LARGEST_MESSAGE} are read")
+    try:
+        data = json.loads(text, object_pairs_hook=_unique, parse_constant=_no_number)
+    except MessageError:
+        raise
+    except (ValueError, RecursionError) as error:
+        _refuse(f"the message is not JSON: {str(error)[:200]}")
+    if not isinstance(data, dict):
+        _refuse(f"a message is a JSON object with its kind, got {_shown(data)}")
+    return data
+
+
+def _unique(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
+    found = dict(pairs)
+    if len(found) < len(pairs):
+        names = [name for name, _ in pairs]
+        twice = next(name for name in names if names.count(name) > 1)
+        _refuse(f"{_shown(twice)} is given twice in one object: give it once")
+    return found
+
+
+def _no_number(text: str) -> NoReturn:
+    _refuse(f"{text} is not a number in JSON: send a finite number or null")
+
+
+def _id(entry: Any) -> int | None:
+    if entry is None or (type(entry) is int and 0 <= entry <= _LARGEST_ID):
+        return entry
+    _refuse(f"id: must be a whole number from 0 to {_LARGEST_ID}, got {_shown(entry)}")
+
+
+def _message(data: Any, known: tuple[type, ...], where: str) -> Any:
+    """The dataclass selected by the kind of a JSON object."""
+    kinds = {kind_of(each): each for each in known}
+    kind = data.get("kind") if isinstance(data, dict) else None
+    if not isinstance(kind, str) or kind not in kinds:
+        listed = choices("kinds", kinds, kind if isinstance(kind, str) else "")
+        _refuse(f"{where or 'kind: '}there is no kind {_shown(kind)} {listed}")
+    entries = {name: entry for name, entry in data.items() if name != "kind"}
+    return _filled(kinds[kind], entries, where or f"{kind}: ")
+
+
+@cache
+def _fields(message: type) -> Mapping[str, tuple[Any, bool]]:
+    """Type of every field, and whether it is required."""
+    types_ = typing.get_type_hints(message)
+    return {
+        field.name: (types_[field.name], field.default is dataclasses.MISSING)
+        for field in dataclasses.fields(message)
+    }
+
+
+def _filled(message: type, entries: dict[str, Any], where: str) -> Any:
+    fields = _fields(message)
+    for name in entries:
+        if name not in fields:
+            _refuse(f"{where}{_shown(name)} is not a field {choices('fields', fields, name)}")
+    for name, (_, needed) in fields.items():
+        if needed and name not in entries:
+            _refuse(f"{where}{name} is missing: send it with the message")
+    longest = _LONGEST_FILES.get(message, _LONGEST_TEXT)
+    return message(
+        **{
+            name: _value(entry, fields[name][0], f"{where}{name}", longest)
+            for name, entry in entries.items()
+        }
+    )
+
+
+def _value(entry: Any, kind: Any, where: str, longest: int) -> Any:
+    """An entry converted to the type of its field."""
+    origin, parts = typing.get_origin(kind), typing.get_args(kind)
+    if origin in (types.UnionType, typing.Union):
+        return _messages_one_of(entry, parts, where, longest)
+    if origin is tuple and parts[-1] is not Ellipsis:
+        if len(_listed(entry, where)) != len(parts):
+            _refuse(f"{where}: must have {len(parts)} entries, got {len(entry)}")
+        return tuple(_each(entry, parts[0], where, longest))
+    if origin is tuple:
+        return tuple(_each(_listed(entry, where), parts[0], where, longest))
+    if origin is dict:
+        table = _tabled(entry, where)
+        for name in table:
+            _text(name, f"{where}: a name", longest)
+        return dict(zip(table, _each(table.values(), parts[1], where, longest), strict=True))
+    if dataclasses.is_dataclass(kind):
+        return _filled(typing.cast(type, kind), _tabled(entry, where), f"{where}: ")
+    return _plain(entry, kind, where, longest)
+
+
+def _each(entries: Any, kind: Any, where: str, longest: int) -> list[Any]:
+    return [_value(entry, kind, f"{where}[{k}]", longest) for k, entry in enumerate(entries)]
+
+
+def _messages_one_of(entry: Any, kinds: tuple[Any, ...], where: str, longest: int) -> Any:
+    messages: tuple[Any, ...] = tuple(k for k in kinds if dataclasses.is_dataclass(k))
+    if messages:
+        return _message(entry, messages, f"{where}: ")
+    if entry is None and type(None) in kinds:
+        return None
+    others = [kind for kind in kinds if kind not in (str, type(None))]
+    if str in kinds and (isinstance(entry, str) or not others):
+        return _text(entry, where, longest)
+    return _value(entry, others[0], where, longest)
+
+
+def _plain(entry: Any, kind: Any, where: str, longest: int) -> Any:
+    if kind is str:
+        return _text(entry, where, longest)
+    if kind is bool:
+        if not isinstance(entry, bool):
+            _refuse(f"{where}: must be true or false, got {_shown(entry)}")
+        return entry
+    if isinstance(entry, bool) or not isinstance(entry, int | float):
+        _refuse(f"{where}: must be a number, got {_shown(entry)}")
+    if kind is int:
+        if not isinstance(entry, int) or abs(entry) > _LARGEST_ID:
+            _refuse(f"{where}: must be a whole number, got {_shown(entry)}")
+        return entry
+    try:
+        number = float(entry)
+    except OverflowError:
+        number = math.inf
+    if not math.isfinite(number):
+        _refuse(f"{where}: must be a finite number, got one that is too large")
+    return number
+
+
+def _text(entry: Any, where: str, longest: int) -> str:
+    if not isinstance(entry, str):
+        _refuse(f"{where}: must be text, got {_shown(entry)}")
+    if len(entry) > longest:
+        _refuse(f"{where}: has {len(entry)} characters, at most {longest} are read")
+    if any("\ud800" <= letter <= "\udfff" for letter in entry):
+        _refuse(f"{where}: contains a lone surrogate: send valid Unicode")
+    return entry
+
+
+def _listed(entry: Any, where: str) -> list[Any]:
+    if not isinstance(entry, list):
+        _refuse(f"{where}: must be a list, got {_shown(entry)}")
+    _check_few(entry, where)
+    return entry
+
+
+def _tabled(entry: Any, where: str) -> dict[str, Any]:
+    if not isinstance(entry, dict):
+        _refuse(f"{where}: must be an object of names and numbers, got {_shown(entry)}")
+    _check_few(entry, where)
+    return entry
+
+
+def _check_few(entries: list[Any] | dict[str, Any], where: str) -> None:
+    if len(entries) > _MOST_ENTRIES:
+        _refuse(f"{where}: has {len(entries)} entries, at most {_MOST_ENTRIES} are read")
+
+
+def _shown(entry: Any) -> str:
+    """A short text of any entry, for messages."""
+    match entry:
+        case dict():
+            return "an object"
+        case list():
+            return "a list"
+        case None:
+            return "null"
+        case bool():
+            return "true" if entry else "false"
+        case str():
+            plain = entry.encode("utf-8", "replace").decode()
+            return f'"{plain[:40]}…"' if len(plain) > 40 else f'"{plain}"'
+        case int() if abs(entry) > 10**18:
+            return "a number of many digits"
+        case _:
+            return f"{entry:g}" if isinstance(entry, float) else str(entry)
+
+
+# ----------------------------------------------------------------------
+# The messages of the live page as TypeScript types, generated from the Python dataclasses.
+
+
+_PLAIN = {str: "string", float: "number", int: "number", bool: "boolean", type(None): "null"}
+_HEAD = """\
+// Written by scripts/frontend types from the dataclasses in
+// linkwork.app.live.requests and linkwork.app.live.events: change those.
+
+import type { PageData } from "./page_data";
+"""
+
+
+def typescript_types() -> str:
+    """A module with an interface for every message, and the unions ``Request`` and ``Event``.
+
+    Fields with a default in Python are optional in requests; events have all fields.
+    """
+    parts = [_HEAD]
+    for message in REQUESTS:
+        own = [f'kind: "{kind_of(message)}"', "id?: number"]
+        parts.append(_interface(message, own, asked=True))
+    for message in EVENTS:
+        own = [f'kind: "{kind_of(message)}"', "answers: number | null"]
+        parts.append(_interface(message, own, asked=False))
+    asked = dict.fromkeys(_parts_of(REQUESTS))
+    parts += [_interface(part, [], asked=True) for part in asked]
+    parts += [_interface(part, [], asked=False) for part in _parts_of(EVENTS) if part not in asked]
+    unions = (("Edit", EDITS), ("Request", REQUESTS), ("Event", EVENTS))
+    # spelled differently from the browser's own Event and Request
+    parts += [
+        f"export type Live{name} =\n{_typescript_one_of(messages)};\n" for name, messages in unions
+    ]
+    return "\n".join(parts)
+
+
+def _interface(message: type, own: list[str], *, asked: bool) -> str:
+    types = typing.get_type_hints(message)
+    lines = [*own]
+    for field in dataclasses.fields(message):
+        optional = asked and field.default is not dataclasses.MISSING
+        lines.append(f"{field.name}{'?' if optional else ''}: {_type(types[field.name])}")
+    body = "".join(f"  {line};\n" for line in lines)
+    return f"export interface {message.__name__} {{\n{body}}}\n"
+
+
+def _typescript_one_of(messages: tuple[type, ...]) -> str:
+    return "\n".join(f"  | {message.__name__}" for message in messages)
+
+
+def _type(kind: Any) -> str:
+    """The TypeScript type of a field's type."""
+    origin, parts = typing.get_origin(kind), typing.get_args(kind)
+    if kind in _PLAIN:
+        return _PLAIN[kind]
+    if dataclasses.is_dataclass(kind):
+        return str(typing.cast(type, kind).__name__)
+    if origin is dict:
+        return f"Record<string, {_type(parts[1])}>"
+    if origin is tuple and parts[-1] is Ellipsis:
+        return f"readonly ({_type(parts[0])})[]"
+    if origin is tuple:
+        return f"readonly [{', '.join(map(_type, parts))}]"
+    if set(EDITS) <= set(parts):
+        return "LiveEdit"
+    if parts:
+        return " | ".join(map(_type, parts))
+    raise TypeError(f"{kind} has no type in TypeScript")
+
+
+def _parts_of(messages: tuple[type, ...]) -> Iterator[type]:
+    """The dataclasses used in messages, without duplicates."""
+    found: dict[type, None] = {}
+
+    def look(kind: Any) -> None:
+        if kind is PageData:  # defined in its own module
+            return
+        if dataclasses.is_dataclass(kind) and isinstance(kind, type):
+            if kind in REQUESTS and kind not in messages:
+                return
+            if kind not in messages:
+                found[kind] = None
+            for inner in typing.get_type_hints(kind).values():
+                look(inner)
+        for part in typing.get_args(kind):
+            look(part)
+
+    for message in messages:
+        look(message)
+    yield from found

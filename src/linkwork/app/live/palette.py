@@ -1,0 +1,243 @@
+"""Parts that the page can add: fields of the forms, and conversion of a completed form to a part.
+
+Tables and keys are those of mechanism files (:mod:`linkwork.core.textfile.keys`), so every kind of
+part of a file can be added; the file reader checks the result.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass
+from typing import NoReturn
+
+from linkwork.app.edits.entries import measured_by
+from linkwork.app.live.drawn_parts import picks_of
+from linkwork.app.live.file_state import PaletteField, PalettePart
+from linkwork.app.live.number_edits import TypedUnits
+from linkwork.app.live.requests import Typed
+from linkwork.core.foundation.containers import FrozenDict
+from linkwork.core.foundation.errors import InputError, UnknownNameError, choices
+from linkwork.core.foundation.units import ANGLES, LENGTHS
+from linkwork.core.foundation.values import (
+    Flag,
+    Formula,
+    Key,
+    ListOf,
+    Measured,
+    NumberValue,
+    Speed,
+    Tables,
+    Text,
+)
+from linkwork.core.mechanism.part.index import PARTS
+
+__all__ = ["PALETTE", "Typed", "field_of", "part_name", "part_of", "shown_entry", "typed_entries"]
+
+
+def part_of(
+    table: str,
+    typed: Mapping[str, Typed],
+    units: TypedUnits,
+    row: Mapping[str, object] = FrozenDict(),
+) -> dict[str, object]:
+    """An entry of a table of parts from user input; empty fields are omitted.
+
+    ``row``: the other fields, of a part that exists.
+
+    Raises
+    ------
+    InputError, UnknownNameError
+        If a table or key does not exist, or an entry does not match its key.
+    """
+    if table not in PARTS:
+        raise UnknownNameError(f'there are no parts "{table}" {choices("parts", PARTS, table)}')
+    return typed_entries(f"[[{table}]]", PARTS[table].keys, typed, units, row)
+
+
+def typed_entries(
+    table: str,
+    keys: Iterable[Key],
+    typed: Mapping[str, Typed],
+    units: TypedUnits,
+    row: Mapping[str, object],
+) -> dict[str, object]:
+    """The entries of a table with these keys from user input; ``row``: its other fields.
+
+    Raises
+    ------
+    InputError, UnknownNameError
+        If a key does not exist, or an entry does not match its key.
+    """
+    known = {key.name: key for key in keys}
+    for name in typed:
+        if name not in known:
+            raise UnknownNameError(
+                f'"{name}" is not a key of {table} {choices("keys", known, name)}'
+            )
+    reader = _Reader(units, {**row, **typed})
+    return {name: reader.entry(known[name], entry) for name, entry in typed.items() if entry}
+
+
+def shown_entry(key: Key, entry: object) -> Typed:
+    """An entry as it would be typed: the inverse of a form."""
+    match key.kind, entry:
+        case Flag(), _:
+            return "true" if entry else "false"
+        case ListOf(Text()), tuple():
+            return tuple(map(str, entry))
+        case ListOf(ListOf()), tuple():
+            return tuple(", ".join(map(str, row)) for row in entry)
+        case ListOf(), tuple():
+            return (", ".join(map(str, entry)),)
+        case Tables(keys), tuple():
+            return tuple(", ".join(str(getattr(row, k.attribute)) for k in keys) for row in entry)
+    return str(entry)
+
+
+def part_name(row: Mapping[str, object]) -> str:
+    """The label of a part: its name, the two links of a weld, or what a load acts on."""
+    if "force" in row or "torque" in row:
+        return f"load on {row.get('point', row.get('link', ''))}"
+    links = row.get("links")
+    if isinstance(links, Sequence) and not isinstance(links, str):
+        return " ".join(map(str, links))
+    return str(row.get("name", ""))
+
+
+def field_of(key: Key) -> PaletteField:
+    """The field of a form for a key."""
+    words: tuple[str, ...] = ()
+    named: tuple[str, ...] = ()
+    match key.kind:
+        case Text(words, of):
+            entry = "choice" if words else of or "text"
+        case NumberValue():
+            entry = "number"
+        case Measured() | Speed():
+            entry = "measured"
+        case Formula():
+            entry = "text"
+        case Flag():
+            entry = "flag"
+        case ListOf(Text(), noun):
+            entry = f"{noun}s"
+        case ListOf(NumberValue() | Speed()):
+            entry = "numbers"
+        case ListOf():
+            entry, named = "lines", ("x", "y")
+        case Tables(keys):
+            entry, named = "lines", tuple(column.name for column in keys)
+        case _:
+            raise TypeError(f"{key.name} cannot be entered on a page")
+    return PaletteField(
+        name=key.name, doc=key.doc, entry=entry, required=key.required, words=words, named=named
+    )
+
+
+#: All kinds of parts, in the order of the tables of a file.
+PALETTE: tuple[PalettePart, ...] = tuple(
+    PalettePart(
+        table=table,
+        title=kind.title,
+        doc=kind.doc,
+        fields=tuple(map(field_of, kind.keys)),
+        picks=picks_of(table),
+    )
+    for table, kind in PARTS.items()
+)
+
+
+@dataclass(frozen=True)
+class _Reader:
+    """Reads the fields of one completed form."""
+
+    units: TypedUnits
+    row: Mapping[str, object]
+
+    def entry(self, key: Key, typed: Typed) -> object:
+        """The kind of entry of a key."""
+        match key.kind:
+            case ListOf(Text()):
+                return list(_lines(key, typed))
+            case ListOf(Speed()):
+                return [self._speed(word) for word in " ".join(_lines(key, typed)).split(",")]
+            case ListOf(NumberValue() as kind):
+                line = " ".join(_lines(key, typed))
+                return [self._number(key, kind, word) for word in self._words(line)]
+            case ListOf(ListOf(NumberValue() as kind)):
+                return [
+                    [self._number(key, kind, word) for word in self._words(line)]
+                    for line in _lines(key, typed)
+                ]
+            case Tables(keys):
+                return [self._row(key, keys, line) for line in _lines(key, typed)]
+        if not isinstance(typed, str):
+            _refuse(key, "is one entry, got a list")
+        match key.kind:
+            case NumberValue() as kind:
+                return self._number(key, kind, typed)
+            case Speed() | Measured():
+                return self._speed(typed)
+            case Flag():
+                if typed not in ("true", "false"):
+                    _refuse(key, f'must be true or false, got "{typed}"')
+                return typed == "true"
+            case _:
+                return typed
+
+    def _row(self, key: Key, keys: Sequence[Key], line: str) -> dict[str, object]:
+        """A row of a table from its words in order; trailing words may be omitted."""
+        words = self._words(line)
+        if len(words) > len(keys):
+            named = " ".join(column.name for column in keys)
+            _refuse(key, f'a line has {named}, got "{line}"')
+        return {
+            column.name: self.entry(column, word) for column, word in zip(keys, words, strict=False)
+        }
+
+    def _words(self, line: str) -> list[str]:
+        """Words separated by commas, or by blanks without commas (formulas may contain blanks)."""
+        if "," in line:
+            return [word.strip() for word in line.split(",")]
+        words: list[str] = []
+        for word in line.split():
+            if words and word in (*LENGTHS, *ANGLES, self.units.length):
+                words[-1] += f" {word}"
+            else:
+                words.append(word)
+        return words
+
+    def _number(self, key: Key, kind: NumberValue, word: str) -> float | int | str:
+        """A number, or otherwise a formula."""
+        plain = word.strip().replace("\u2212", "-")
+        given = self.units.number(plain, measured_by(kind, self.row), key.name)
+        return _plain(given, plain)
+
+    def _speed(self, word: str) -> float | int | str:
+        """A number, or text with a unit that the file reads."""
+        plain = word.strip().replace("\u2212", "-")
+        given = self.units.speed(plain)
+        assert given is not None
+        return _plain(given, str(given))
+
+
+def _plain(given: float | str, text: str) -> float | int | str:
+    """A number, whole without decimals; what is none, or not finite, stays text."""
+    try:
+        value = float(given)
+    except ValueError:
+        return text
+    if not math.isfinite(value):
+        return text  # the file reader reports the problem
+    return int(value) if value.is_integer() and abs(value) < 1e15 else value
+
+
+def _lines(key: Key, typed: Typed) -> tuple[str, ...]:
+    if isinstance(typed, str):
+        _refuse(key, f'must be a list, got "{typed}"')
+    return tuple(line.strip() for line in typed if line.strip())
+
+
+def _refuse(key: Key, message: str) -> NoReturn:
+    raise InputError(f"{key.name}: {message}")

@@ -1,0 +1,153 @@
+"""A page of the designs of a synthesis: counts, pictures, and a table that sorts."""
+
+from __future__ import annotations
+
+import html
+import os
+from collections.abc import Iterator, Mapping, Sequence
+
+from linkwork.core.drawing.scene import Scene
+from linkwork.core.drawing.svg import Inks, embedded_svg, inline_svg
+from linkwork.core.results.listing.motion_listing import rounded_down
+from linkwork.synthesis.defects.verdicts import JudgedDesign
+from linkwork.synthesis.solvers.result import Synthesis, goal_misses
+from linkwork.synthesis.solvers.solving import advice_of, remarks_on
+
+__all__ = ["designs_page"]
+
+_LONGEST = 300.0  # the longer side of a picture [CSS pixels]
+_CLASS = "linkwork-designs"
+_STYLE = """
+body{margin:0 auto;max-width:72rem;padding:1.5rem;background:Canvas;color:CanvasText;
+color-scheme:light dark;font:15px/1.5 system-ui,-apple-system,"Segoe UI",Roboto,sans-serif}
+h1{font-size:1.4rem;margin:0 0 .5rem}h2{font-size:1.1rem;margin:1.5rem 0 .5rem}
+.pictures{display:grid;grid-template-columns:repeat(auto-fill,minmax(17rem,1fr));gap:1rem}
+figure{margin:0;padding:.75rem;border:1px solid color-mix(in srgb,CanvasText 20%,Canvas);
+border-radius:.5rem}
+.front{max-width:46rem;background:#fff}.front svg{width:100%;height:auto}
+figcaption{font-size:.85rem}
+.wide{overflow-x:auto}table{border-collapse:collapse;font-variant-numeric:tabular-nums}
+th,td{padding:.2rem .8rem .2rem 0;text-align:left;white-space:nowrap;vertical-align:top}
+th,td:last-child{white-space:normal}td:last-child:not(:empty){min-width:16rem}
+th button{font:inherit;text-align:left;font-weight:600;border:0;background:none;color:inherit;
+padding:0;cursor:pointer}tr.refused{color:color-mix(in srgb,CanvasText 60%,Canvas)}
+dl{display:grid;grid-template-columns:fit-content(36%) 1fr;gap:.1rem 1rem;margin:0}dd{margin:0}
+""".replace("\n", "")
+_SORT = """
+document.querySelectorAll("th button").forEach((button,column)=>{let up=false;
+button.addEventListener("click",()=>{up=!up;const body=document.querySelector("tbody");
+const key=(row)=>row.cells[column].dataset.key??row.cells[column].textContent;
+const rows=[...body.rows].sort((a,b)=>{const x=key(a),y=key(b),n=Number(x)-Number(y);
+return (Number.isNaN(n)?x.localeCompare(y):n)*(up?1:-1)});body.append(...rows)})});
+""".replace("\n", "")
+_MOST_ROWS = 2000
+
+
+def designs_page(
+    found: Synthesis, scenes: Sequence[Scene], files: Mapping[int, str], front: bytes = b""
+) -> str:
+    """A page that works offline: counts, pictures of the best designs, all verdicts.
+
+    Parameters
+    ----------
+    found : Synthesis
+    scenes : sequence of Scene
+        Pictures of the first delivered designs.
+    files : Mapping[int, str]
+        The files of designs by their place in the list.
+    front : bytes
+        An SVG file of the trade-off between goals, if there is one.
+    """
+    inks = Inks()
+    pictures = [
+        f"<figure>{inline_svg(scene, inks, longest=_LONGEST)}"
+        f"<figcaption>{html.escape(_caption(found, design))}</figcaption></figure>"
+        for scene, design in zip(scenes, found.delivered, strict=False)
+    ]
+    title = html.escape(found.task.name)
+    return (
+        f'<!doctype html><html lang="en"><head><meta charset="utf-8"><title>{title}</title>'
+        '<meta name="viewport" content="width=device-width,initial-scale=1">'
+        f"<style>{_STYLE}{inks.rules(_CLASS)}</style></head>"
+        f'<body class="{_CLASS}"><h1>{title}</h1><dl>{"".join(_counts(found))}</dl>'
+        f"{_front(front)}"
+        f'<h2>Delivered</h2><div class="pictures">{"".join(pictures)}</div>'
+        f'<h2>All designs</h2><div class="wide"><table><thead><tr>{_head(found)}</tr></thead>'
+        f"<tbody>{''.join(_rows(found, files))}</tbody></table></div>"
+        f"<script>{_SORT}</script></body></html>\n"
+    )
+
+
+def _solutions(found: Synthesis) -> tuple[str, str]:
+    if found.starts:
+        return "starts", str(found.starts)
+    return "solutions", f"{found.complex} complex, {found.real} real, {found.proved} proved"
+
+
+def _front(picture: bytes) -> str:
+    if not picture:
+        return ""
+    shown = embedded_svg(picture, "trade-off", "The misses of the goals against each other")
+    return f'<h2>Front</h2><figure class="front">{shown}</figure>'
+
+
+def _counts(found: Synthesis) -> Iterator[str]:
+    pairs = [
+        _solutions(found),
+        ("mechanisms", str(found.linkages)),
+        ("designs", str(len(found.designs))),
+        *((kind.value, str(count)) for kind, count in found.defects.items()),
+        ("delivered", f"{len(found.delivered)} of {found.sound} without defects"),
+        ("completeness", found.message),
+    ]
+    pairs += [("remark", text) for text in remarks_on(found)]
+    if advice := advice_of(found):
+        pairs.append(("advice", advice))
+    if len(found.designs) > _MOST_ROWS:
+        pairs.append(("table", f"the first {_MOST_ROWS} designs; designs.csv holds all"))
+    for name, text in pairs:
+        yield f"<dt>{html.escape(name)}</dt><dd>{html.escape(text)}</dd>"
+
+
+def _caption(found: Synthesis, design: JudgedDesign) -> str:
+    task = found.task
+    return (
+        f"{design.number}: {design.mechanism} driven at {design.driven}, "
+        f"transmission angle {rounded_down(design.transmission, 4):g}{task.angle.sign} or more, "
+        f"longest link {design.size:.4g} {task.length}"
+    )
+
+
+def _head(found: Synthesis) -> str:
+    task, unit = found.task, f"[{found.error_unit}]" if found.error_unit else ""
+    names = (
+        "design", "mechanism", "drive", f"transmission [{task.angle.value}]",
+        f"size [{task.length}]", f"error {unit}".strip(), "score",
+        *(f"miss of {name}" for name in goal_misses(found.designs)), "defect",
+    )  # fmt: skip
+    return "".join(f"<th><button>{html.escape(name)}</button></th>" for name in names)
+
+
+def _rows(found: Synthesis, files: Mapping[int, str]) -> Iterator[str]:
+    goals = goal_misses(found.designs)
+    for k, design in enumerate(found.designs[:_MOST_ROWS]):
+        defect = design.defects[0].message if design.kinds else ""
+        number = str(k + 1)
+        if k in files:
+            name = os.path.basename(files[k])
+            link = f"refused/{name}" if design.kinds else name
+            number = f'<a href="{html.escape(link)}">{number}</a>'
+        numbers = [rounded_down(design.transmission, 5), design.size, design.error, design.score]
+        numbers += [misses[k] for misses in goals.values()]
+        cells = [
+            f'<td data-key="{k + 1}">{number}</td>',
+            f"<td>{design.mechanism}</td><td>{design.driven}</td>",
+            *(f'<td data-key="{value}">{_number(value)}</td>' for value in numbers),
+            f"<td>{html.escape(defect)}</td>",
+        ]
+        style = ' class="refused"' if design.kinds else ""
+        yield f"<tr{style}>{''.join(cells)}</tr>"
+
+
+def _number(value: float) -> str:
+    return f"{value:.5g}" if value == value else "–"

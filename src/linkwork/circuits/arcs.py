@@ -1,0 +1,503 @@
+"""Curves along which the input turns fully, followed and proved by the compiled march of sweeps."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from linkwork.circuits.branches import (
+    CurveBranch,
+    TracedCurve,
+    branches_of,
+    confirmed,
+    trace_boldly,
+    trace_with_proof,
+)
+from linkwork.core.foundation.arrays import Array
+from linkwork.core.foundation.rounding import CLOSER_TANGENT, EPSILON, REGULAR_CONDITION
+from linkwork.core.foundation.statuses import CircuitEnd, Status
+from linkwork.core.foundation.units import FULL_TURN
+from linkwork.core.motion.following import Drive
+from linkwork.core.motion.model import FITS, misfit
+from linkwork.core.numerics.branch_tracking import Node, node_at
+from linkwork.core.numerics.change_point import Crossing
+from linkwork.core.numerics.curve_proof import ProvenCurve, prove_curve, prove_curves
+from linkwork.core.numerics.curve_tracing import Curve, Leg, tangents_apart
+from linkwork.core.numerics.local_parametrization import (
+    Parametrization,
+    Parametrizations,
+    apart,
+    coincide,
+    fastest_leader,
+    near,
+    same_position,
+    whole_turns,
+)
+from linkwork.core.numerics.system import SolvedRows
+from linkwork.families import by_kernels
+
+_STEPS = 24  # of a turn, besides those that the march takes in between
+_AS_LONG = 150  # rows of a sweep: as long does it take to follow and prove a turn in plain numbers
+
+
+def full_turn(drive: Drive, start: Array) -> TracedCurve | None:
+    """The curve through a position (N,) that closes after one turn of the input, with its proof.
+
+    ``None`` where compiled code does not pay, and where the march does not prove the whole turn:
+    at dead points, near change points, and where the curve closes after several turns only.
+    """
+    leads, p = drive.leads, drive.leads.parameter
+    own = leads.with_parameter(p)
+    if not leads.is_angle[p] or own is None or not own.provable:
+        return None
+    if not by_kernels.kernels_pay(drive.model, _AS_LONG):
+        return None
+    here = own.node(start)
+    t = here.t + np.linspace(0.0, FULL_TURN, _STEPS + 1)
+    # whole turns are no floats: proofs hold for the exact value, too
+    slip = 4.0 * EPSILON * (abs(here.t) + FULL_TURN)
+    anchor = node_at(drive.solver, drive.path, here.t, start)
+    rows = by_kernels.kernel_rows(drive, anchor, t, slip * np.abs(drive.path.rate))
+    if rows is None or not _closes(drive, rows):
+        return None
+    leg = Leg(led=own, nodes=(here, *_nodes_behind(own, here, t, rows)))
+    return TracedCurve(
+        curve=Curve(legs=(leg,), end=CircuitEnd.CLOSED, passes=((0, rows.v[-1]),)),
+        proof=ProvenCurve(
+            legs=np.ones(1, dtype=bool),
+            junctions=np.zeros(0, dtype=bool),
+            closed=True,
+            steps=_STEPS,
+        ),
+        turns=(),
+    )
+
+
+def _closes(drive: Drive, rows: SolvedRows) -> bool:
+    """Whether the last of proved rows is proved to be the first, modulo whole turns.
+
+    The last position is at most its radius away from the last row's numbers. If these are so near
+    to the first row's that it lies within the first uniqueness radius, it is the first position:
+    no other one lies there.
+    """
+    first, last = rows.v[0], rows.v[-1]
+    turns = whole_turns(drive.leads, first, last)
+    if not drive.leads.repeats_after(turns):
+        return False
+    gap = np.abs(last - FULL_TURN * turns - first) + 4.0 * EPSILON * np.abs(last)
+    away = float((gap / drive.leads.scale)[: drive.solver.unknowns].max())
+    return away + float(rows.radius[-1]) < float(rows.uniqueness_radius[0])
+
+
+def _nodes_behind(own: Parametrization, here: Node, t: Array, rows: SolvedRows) -> list[Node]:
+    """Proved rows as nodes; det J keeps its sign along proved steps."""
+    v, first, second = (x[:, own.order] for x in (rows.v, rows.first, rows.second))
+    return [
+        Node(
+            t=at,
+            v=v[k],
+            first=first[k],
+            second=second[k],
+            orientation=here.orientation,
+            condition=float(rows.condition[k]),
+            nearness=float(rows.condition[k]),  # at most that
+        )
+        for k, at in enumerate(t.tolist())
+        if k
+    ]
+
+
+# ----------------------------------------------------------------------
+# Curves of positions, traced one after the other and proved together.
+
+
+_HALVINGS = 12  # of a bold step: one that needs more is traced again with careful ones
+
+
+class Walks:
+    """The curve from each place and heading, traced once.
+
+    Curves are traced boldly at first, and proved together by :meth:`settle`: few large arrays take
+    far less time than many small ones. From then on each is proved at once. Where compiled code
+    proves a whole turn of the input, nothing remains to be done. ``prove_turns``: whether to prove
+    where dead points are.
+    """
+
+    def __init__(self, drive: Drive, certify: bool, *, prove_turns: bool = True) -> None:
+        self.drive, self.leads, self.certify = drive, drive.leads, certify
+        self.prove_turns = prove_turns
+        self._known: dict[tuple[bytes, bytes], TracedCurve] = {}
+        self._open: dict[tuple[bytes, bytes], tuple[Array, float | Array]] = {}
+        self._proved: dict[int, TracedCurve] = {}
+        self._turned: dict[int, Array] = {}
+        self._settled = not certify
+
+    def walk(
+        self, start: Array, heading: float | Array, known: Sequence[Crossing] = ()
+    ) -> TracedCurve:
+        """The curve from a position (N,) on; its proof may still have to be made.
+
+        ``known``: change points at which it may end, located again if dead points are proved.
+        """
+        key = start.tobytes(), np.asarray(heading, dtype=float).tobytes()
+        forwards = isinstance(heading, float) and heading > 0.0
+        if key not in self._known and self.certify and forwards:
+            turned = full_turn(self.drive, start)
+            if turned is not None:
+                self._known[key] = turned
+                self._turned[id(turned.curve)] = start
+        if key not in self._known:
+            ends = None if self.prove_turns else known
+            found = trace_boldly(
+                self.leads, start, heading, self.certify, prove_turns=self.prove_turns, known=ends
+            )
+            if self.certify and found.curve.legs:
+                if self._settled:
+                    proof = prove_curve(self.leads, found.curve)
+                    found = confirmed(self.leads, start, heading, found, proof)
+                else:
+                    self._open[key] = start, heading
+            self._known[key] = found
+        return self._known[key]
+
+    def settle(self) -> bool:
+        """Prove all curves; whether all of them remain. Others were traced again with care."""
+        remain = True
+        found = [self._known[key] for key in self._open]
+        proofs = prove_curves(self.leads, [one.curve for one in found], halvings=_HALVINGS)
+        for (key, place), one, proof in zip(self._open.items(), found, proofs, strict=True):
+            after = confirmed(self.leads, *place, one, proof)
+            self._known[key] = self._proved[id(one.curve)] = after
+            remain &= after.curve is one.curve
+        self._open.clear()
+        self._settled = True
+        return remain
+
+    def with_proof(self, walk: TracedCurve) -> TracedCurve:
+        """A curve that remained, as it was settled."""
+        return self._proved.get(id(walk.curve), walk)
+
+    def stepwise(self, walk: TracedCurve) -> TracedCurve:
+        """A curve followed in plain numbers even if compiled code has proved it.
+
+        So the positions that are shown do not depend on what this process has loaded, unless plain
+        numbers do not close the curve: then that of compiled code remains, which is proved closed.
+        """
+        start = self._turned.get(id(walk.curve))
+        if start is None:
+            return walk
+        found = trace_with_proof(self.leads, start, 1.0, self.certify)
+        return found if found.curve.end.closed and not found.turns else walk
+
+
+# ----------------------------------------------------------------------
+# All curves of positions through given ones: closed curves, and arcs between crossings.
+#
+# Where two curves cross (a change point) four half-branches leave; each is followed, so that
+# everything that is connected is found.
+
+
+_FINE = 8  # positions of a branch per step of its curve
+_STRIDES = (1e-2, 3e-3, 1e-3, 1e-4)  # weighted, tried in this order
+_NEAR = 0.3  # weighted: positions further from a branch do not lie on it
+_STILL = 1e-5  # weighted change of the parameter along an arc on which it rests, up to a crossing
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Arc:
+    """A curve, followed until it closes or ends.
+
+    ``up``: the walk that began forwards; ``down``: the one backwards, if the first did not close.
+    ``crossings``: numbers of the change points at its ends. ``branches``: in the order start's own,
+    onwards, backwards; their positions between the nodes of the curve are interpolated.
+    """
+
+    up: TracedCurve
+    down: TracedCurve | None
+    end: CircuitEnd
+    crossings: tuple[int, ...]
+    branches: tuple[CurveBranch, ...]
+
+    @property
+    def walks(self) -> tuple[TracedCurve, ...]:
+        """All pieces."""
+        return (self.up,) if self.down is None else (self.up, self.down)
+
+    @property
+    def certified(self) -> bool:
+        """Whether all of it is proved."""
+        return all(walk.certified for walk in self.walks)
+
+
+class Explorer:
+    """All curves found so far, and the change points between them.
+
+    Parameters
+    ----------
+    walks : Walks
+    """
+
+    def __init__(self, walks: Walks) -> None:
+        self.walks, self.leads = walks, walks.leads
+        self.restart()
+
+    def restart(self) -> None:
+        """Forget everything but the walks."""
+        self.arcs: list[Arc] = []
+        self.crossings: list[Crossing] = []
+        self._covered: set[tuple[int, int, float]] = set()
+        self._passed: list[tuple[Array, int]] = []
+
+    def solved_branches(self, arc: Arc) -> tuple[CurveBranch, ...]:
+        """The branches of an arc, all their positions solved."""
+        up = self.walks.stepwise(arc.up)
+        return tuple(_branches(self.leads, up, arc.down, solved=True))
+
+    def settle(self) -> bool:
+        """Prove all arcs; false if one was replaced, so that others may follow from it."""
+        remain = self.walks.settle()
+        if remain:
+            self.arcs = [_with_proofs(arc, self.walks) for arc in self.arcs]
+        return remain
+
+    def visit(self, seed: Array) -> int:
+        """The number of the arc through a position at which the parameter can lead.
+
+        The curve is followed if it is new, with everything that branches off at change points of
+        arcs on which redundant links fit.
+        """
+        first, number = self.arc_through(seed), 0
+        while number < len(self.crossings):
+            if any(number in arc.crossings and self.fits(arc) for arc in self.arcs):
+                while self.branch_off(number):
+                    pass
+            number += 1
+        return first
+
+    def arc_through(self, seed: Array) -> int:
+        """The number of the arc through a position; it is followed if it is new."""
+        number = self.known_arc(seed)
+        return self._explore(seed, 1.0) if number is None else number
+
+    def known_arc(self, seed: Array) -> int | None:
+        """The number of the arc through a position, if that is followed already."""
+        # positions that walks have passed at the starting value: the cheapest test comes first
+        for k in near(self.leads, [v for v, _ in self._passed], seed):
+            v, number = self._passed[k]
+            if same_position(self.leads, v, seed):
+                return number
+        for number, arc in enumerate(self.arcs):
+            if any(_lies_on(self.leads, branch, seed) for branch in arc.branches):
+                return number
+        return None
+
+    def branch_off(self, number: int) -> bool:
+        """Follow a half-branch of a crossing that no arc came along and on which redundant links
+        fit; false if none is left.
+        """
+        crossing = self.crossings[number]
+        for k, sign in self.half_branches(number):
+            self._covered.add((number, k, sign))
+            direction = sign * crossing.directions[k]
+            beyond = _beyond(self.leads, crossing, direction)
+            # an arc along which redundant links do not fit leads nowhere: nothing moves along it
+            if beyond is not None and self._fit_at(beyond[None, :]):
+                self._explore(beyond, direction)
+                return True
+        return False
+
+    def half_branches(self, number: int) -> list[tuple[int, float]]:
+        """Those of a crossing that no arc came along: the number of the direction, and its sign."""
+        both = [(k, sign) for k in (0, 1) for sign in (1.0, -1.0)]
+        return [(k, sign) for k, sign in both if (number, k, sign) not in self._covered]
+
+    def fits(self, arc: Arc) -> bool:
+        """Whether redundant links fit all along an arc."""
+        return all(self._fit_at(leg.v) for walk in arc.walks for leg in walk.curve.legs)
+
+    def _fit_at(self, v: Array) -> bool:
+        """Whether redundant links fit at all of some positions (K, N)."""
+        return bool((misfit(self.walks.drive.model.equations, v) <= FITS).all())
+
+    def _explore(self, seed: Array, heading: float | Array) -> int:
+        """Follow the curve through a seed both ways; the number of the arc."""
+        up, above = self._walk(seed, heading)
+        down, below = (None, None) if up.curve.end.closed else self._walk(seed, -heading)
+        ends = [c for c in (above, below) if c is not None]
+        return self._keep(up, down, seed, ends)
+
+    def _keep(self, up: TracedCurve, down: TracedCurve | None, seed: Array, ends: list[int]) -> int:
+        number = len(self.arcs)
+        reasons = [walk.curve.end for walk in (up, down) if walk is not None]
+        # the reason that leaves most open
+        reason = max(reasons, key=list(CircuitEnd).index)
+        arc = Arc(
+            up=up,
+            down=down,
+            end=reason,
+            crossings=tuple(ends),
+            branches=tuple(_branches(self.leads, up, down, solved=False)),
+        )
+        if _rests(self.leads, arc):
+            arc = replace(arc, end=CircuitEnd.INPUT_CONSTANT)
+        self.arcs.append(arc)
+        self._passed.append((seed, number))
+        for walk in arc.walks:
+            self._passed += [(v, number) for _, v in walk.curve.passes]
+        return number
+
+    def _walk(self, start: Array, heading: float | Array) -> tuple[TracedCurve, int | None]:
+        """A walk and the number of the crossing it ends at, if it does."""
+        walk = self.walks.walk(start, heading, self.crossings)
+        found = walk.curve.crossing
+        if found is None or not walk.curve.legs:
+            return walk, None
+        led, node = walk.curve.last
+        first = walk.curve.legs[-1].nodes[0]
+        side = math.copysign(1.0, node.t - first.t)
+        return walk, self._register(found, -side * led.whole(node.first))
+
+    def _register(self, found: Crossing, came_from: Array) -> int:
+        number = next(
+            (k for k, one in enumerate(self.crossings) if coincide(self.leads, one.v, found.v)),
+            len(self.crossings),
+        )
+        if number == len(self.crossings):
+            self.crossings.append(found)
+        units = self.crossings[number].directions / self.leads.scale
+        # directions are compared by their angle, not by their size
+        along = units @ (came_from / self.leads.scale) / np.linalg.norm(units, axis=1)
+        # the half-branch that points back to where the walk came from
+        k = int(np.abs(along).argmax())
+        self._covered.add((number, k, math.copysign(1.0, along[k])))
+        return number
+
+
+def _with_proofs(arc: Arc, walks: Walks) -> Arc:
+    proved = replace(
+        arc,
+        up=walks.with_proof(arc.up),
+        down=None if arc.down is None else walks.with_proof(arc.down),
+    )
+    # the first branch needs no way to it
+    others = [replace(branch, proved=proved.certified) for branch in arc.branches[1:]]
+    return replace(proved, branches=(*arc.branches[:1], *others))
+
+
+def _beyond(leads: Parametrizations, crossing: Crossing, direction: Array) -> Array | None:
+    """A position just beyond a crossing along a direction, clearly not on the other curve."""
+    v, speed = crossing.v, np.abs(direction) / leads.scale
+    gap = tangents_apart(leads, crossing)
+    leader = fastest_leader(leads, v, speed)
+    lead = int(np.argmax(speed)) if leader is None else leader[0].lead
+    led = leads.with_parameter(lead)
+    if led is None:
+        return None
+    for stride in _STRIDES:
+        guess = v + stride * direction
+        done = led.solver.solve(guess[led.order][None, :])
+        if done.status[0] != Status.CONVERGED.code:
+            continue
+        found = led.whole(done.v[0])
+        moving = speed > 0.0
+        off = float(np.abs((found - guess) / leads.scale)[moving].max())
+        # much nearer to this tangent than to the other: a smaller stride separates them better
+        if off <= CLOSER_TANGENT * stride * gap and led.node(found).nearness < REGULAR_CONDITION:
+            return found
+    return None
+
+
+def _branches(
+    leads: Parametrizations, up: TracedCurve, down: TracedCurve | None, *, solved: bool
+) -> list[CurveBranch]:
+    """The branches of an arc; the first one is joined from both walks."""
+    onward, back = (
+        branches_of(leads, walk, _FINE, solved=solved)
+        if walk is not None and walk.curve.legs
+        else []
+        for walk in (up, down)
+    )
+    if not onward or not back:
+        return onward or back
+    first, first_back = onward[0], back[0]
+    best = first if first.ratio >= first_back.ratio else first_back
+    joined = replace(
+        first,
+        v=np.concatenate([first_back.v[:0:-1], first.v]),
+        limits=(*first_back.limits[:0:-1], *first.limits),
+        begin=first_back.end,
+        anchor=best.anchor,
+        leader=best.leader,
+        ratio=best.ratio,
+        proved=first.proved and first_back.proved,
+    )
+    return [joined, *onward[1:], *back[1:]]
+
+
+def _lies_on(leads: Parametrizations, branch: CurveBranch, seed: Array) -> bool:
+    """Whether a position is that of a branch at the same value of the parameter.
+
+    The branch's samples are so dense that Newton's method from between two of them stays there.
+    """
+    own = leads.with_parameter(leads.parameter)
+    if own is None:
+        return False
+    for guess in _positions_near(leads, branch, float(seed[leads.parameter])):
+        # far from the branch: Newton-Raphson could only come back to it
+        if np.abs(apart(leads, guess, seed) / leads.scale).max() > _NEAR:
+            continue
+        done = own.solver.solve(guess[own.order][None, :])
+        if done.status[0] != Status.CONVERGED.code:
+            continue
+        if same_position(leads, own.whole(done.v[0]), seed):
+            return True
+    return False
+
+
+def positions_at_value(leads: Parametrizations, branch: CurveBranch, value: float) -> list[Array]:
+    """The positions (N,) of a branch at a value of the parameter, modulo whole turns."""
+    own = leads.with_parameter(leads.parameter)
+    found = []
+    for guess in _positions_near(leads, branch, value):
+        if own is not None:
+            done = own.solver.solve(guess[own.order][None, :])
+            if done.status[0] == Status.CONVERGED.code:
+                found.append(own.whole(done.v[0]))
+    return found
+
+
+def _positions_near(leads: Parametrizations, branch: CurveBranch, value: float) -> list[Array]:
+    """Interpolated positions (N,) of a branch at a value of the parameter, modulo whole turns."""
+    p = leads.parameter
+    low, high = branch.range(p)
+    shifts = [0.0]
+    if leads.is_angle[p]:
+        turn = 2.0 * math.pi
+        first, last = math.ceil((low - value) / turn), math.floor((high - value) / turn)
+        shifts = [k * turn for k in range(first, last + 1)]
+    order = np.argsort(branch.v[:, p], kind="stable")
+    t = branch.v[order, p]
+    found = []
+    for shift in shifts:
+        here = value + shift
+        if low <= here <= high:
+            k = int(np.clip(np.searchsorted(t, here, side="right") - 1, 0, len(t) - 2))
+            width = t[k + 1] - t[k]
+            s = (here - t[k]) / width if width else 0.0
+            # samples are dense: a line between two of them lies in the basin of the branch
+            guess = (1.0 - s) * branch.v[order[k]] + s * branch.v[order[k + 1]]
+            guess[p] = here
+            found.append(guess)
+    return found
+
+
+def _rests(leads: Parametrizations, arc: Arc) -> bool:
+    """Whether the parameter is constant along the whole arc."""
+    p = leads.parameter
+    values = [leg.v[:, p] for walk in arc.walks for leg in walk.curve.legs]
+    if not values:
+        return False
+    return bool(np.ptp(np.concatenate(values)) < _STILL * leads.scale[p])

@@ -1,0 +1,43 @@
+"""Pictures of positions: a pose becomes a scene of primitives, which writers translate to files."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from linkwork.core.foundation.loading import loader
+
+if TYPE_CHECKING:
+    from linkwork.core.drawing.annotations import SceneOptions as SceneOptions
+    from linkwork.core.drawing.matplotlib_writer import figure as figure
+    from linkwork.core.drawing.mechanism_scene import (
+        Sheet as Sheet,
+        configuration_sheet as configuration_sheet,
+        reach_of as reach_of,
+        scene_of as scene_of,
+    )
+    from linkwork.core.drawing.picture_file import render as render, write as write
+    from linkwork.core.drawing.scene import (
+        DARK as DARK,
+        LIGHT as LIGHT,
+        THEMES as THEMES,
+        Arc as Arc,
+        Box as Box,
+        Disc as Disc,
+        Hatch as Hatch,
+        Polygon as Polygon,
+        Polyline as Polyline,
+        Role as Role,
+        Scene as Scene,
+        Style as Style,
+        Text as Text,
+        Theme as Theme,
+        theme_named as theme_named,
+    )
+    from linkwork.writers.charts.chart import Chart as Chart
+    from linkwork.writers.charts.circuits import circuit_chart as circuit_chart
+    from linkwork.writers.charts.matplotlib_plot import (
+        plot_circuits as plot_circuits,
+        plot_motion as plot_motion,
+    )
+else:
+    __getattr__ = loader(__name__)

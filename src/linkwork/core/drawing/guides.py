@@ -1,0 +1,283 @@
+"""Symbols of sliders and slots: a block on a rail, a collar on a rod, a pin in a slot."""
+
+from __future__ import annotations
+
+import cmath
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from linkwork.core.drawing.links import Gap, couplings, hatching, stems, uncovered
+from linkwork.core.drawing.pose import Pose, travel_along
+from linkwork.core.drawing.scene import Measures, Polygon, Polyline, Primitive, Role, xy
+from linkwork.core.foundation.names import GROUND
+from linkwork.core.mechanism.bodies import Guide
+from linkwork.core.mechanism.part.guides import GenevaWheel
+from linkwork.core.mechanism.skeleton import Rail
+
+__all__ = ["Track", "guide_symbols", "track_gaps", "tracks"]
+
+
+@dataclass(frozen=True, kw_only=True)
+class Track:
+    """The drawn geometry of a slider or slot.
+
+    Parameters
+    ----------
+    name, on : str
+        Names of the slider or slot, and of the link with the line.
+    along, away : complex
+        Unit vectors of the line and towards the side of the rail and its hatching.
+    start, end : complex
+        The ends of the travel along the line.
+    places : tuple of complex
+        The current positions of blocks or pins.
+    foot, tip : complex
+        The two points of the link that define the line.
+    shown : bool
+        Whether it has a symbol: slots of Geneva wheels and grooves of couplings are drawn with
+        their links.
+    """
+
+    name: str
+    on: str
+    tone: int
+    block: bool
+    fixed: bool
+    along: complex
+    away: complex
+    start: complex
+    end: complex
+    places: tuple[complex, ...]
+    foot: complex
+    tip: complex
+    shown: bool = True
+
+
+def tracks(pose: Pose, measures: Measures, tone_of: Mapping[str, int]) -> list[Track]:
+    """The geometry of all sliders and slots; the points of one slider share it."""
+    groups: dict[str, list[Guide]] = {}
+    for guide in pose.skeleton.guides:
+        groups.setdefault(guide.name, []).append(guide)
+    hidden = {wheel.name for wheel in pose.skeleton.of(GenevaWheel)}
+    hidden |= {name for coupling in couplings(pose.skeleton) for name in coupling.guides}
+    found = [
+        replace(_track(pose, measures, guides, tone_of), shown=name not in hidden)
+        for name, guides in groups.items()
+    ]
+    return found + [_rail_track(pose, measures, rail, tone_of) for rail in pose.skeleton.rails]
+
+
+def _on_link(pose: Pose, rail: Rail, line: tuple[str, str], tone_of: Mapping[str, int]) -> Track:
+    """A block on a link."""
+    foot, tip = (pose.points[name] for name in line)
+    along = (tip - foot) / abs(tip - foot)
+    travel = travel_along(pose, rail.points[0], line)
+    return Track(
+        name=rail.name,
+        on=rail.on,
+        tone=tone_of.get(rail.on, 1),
+        block=True,
+        fixed=False,
+        along=along,
+        away=along * -1j,
+        start=foot + travel.low * along,
+        end=foot + travel.high * along,
+        places=(pose.points[rail.points[0]],),
+        foot=foot,
+        tip=tip,
+    )
+
+
+def _rail_track(pose: Pose, measures: Measures, rail: Rail, tone_of: Mapping[str, int]) -> Track:
+    """A block on a line, at the joint of the sliding body with another one."""
+    if rail.line is not None:
+        return _on_link(pose, rail, rail.line, tone_of)
+    carrying = [p for p in rail.points if p in pose.skeleton.pins] or list(rail.points[:1])
+    places = tuple(pose.points[p] for p in carrying)
+    ways = [pose.paths.get(p, np.array([pose.points[p]])) for p in carrying]
+    far = np.concatenate([((way - places[0]) * rail.along.conjugate()).real for way in ways])
+    return Track(
+        name=rail.name,
+        on=GROUND,
+        tone=1,
+        block=True,
+        fixed=True,
+        along=rail.along,
+        away=_rail_side(pose, rail.points, rail.along, measures),
+        start=places[0] + float(np.nanmin(far)) * rail.along,
+        end=places[0] + float(np.nanmax(far)) * rail.along,
+        places=places,
+        foot=places[0],
+        tip=places[0] + rail.along,
+    )
+
+
+def _track(
+    pose: Pose, measures: Measures, guides: list[Guide], tone_of: Mapping[str, int]
+) -> Track:
+    guide = guides[0]
+    along = pose.direction(guide)
+    fixed = pose.on_ground(guide)
+    # The block is at the joint of the sliding link with another one, or at its first point;
+    # it is set back from a cam that it follows.
+    stem = stems(pose, measures)
+    free = [g for g in guides if g.point not in stem] or guides
+    carrying = [g for g in free if g.point in pose.skeleton.pins] or free[:1]
+    back = stem.get(carrying[0].point, 0j)
+    places = tuple(pose.points[g.point] + back for g in carrying)
+    travels = [pose.displacement(g) for g in carrying]
+    # where the displacement is zero
+    first = places[0] - travels[0].now * along
+    low, high = min(t.low for t in travels), max(t.high for t in travels)
+    if not guide.block and not fixed and not pose.paths:
+        low, high = _slot_without_motion(pose, guide, low, high, measures)
+    return Track(
+        name=guide.name,
+        on=guide.on,
+        tone=tone_of.get(guide.on, 1),
+        block=guide.block,
+        fixed=fixed,
+        along=along,
+        away=_rail_side(pose, [g.point for g in guides], along, measures) if fixed else along * -1j,
+        start=first + low * along,
+        end=first + high * along,
+        places=places,
+        foot=pose.points[guide.line[0]],
+        tip=pose.points[guide.line[1]],
+    )
+
+
+def _slot_without_motion(
+    pose: Pose, guide: Guide, low: float, high: float, measures: Measures
+) -> tuple[float, float]:
+    """The default travel without a motion: most of the line if the pin is on it."""
+    length = abs(pose.points[guide.line[1]] - pose.points[guide.line[0]])
+    margin = 5 * measures.pin
+    if margin < low < length - margin:
+        return margin, length - margin
+    return low - margin, high + margin
+
+
+def _rail_side(pose: Pose, points: Sequence[str], along: complex, measures: Measures) -> complex:
+    """The hatched side of a fixed line, the same in all positions of a motion.
+
+    Below by convention; above only if the links that move the slider are always below the line.
+    Upright lines are hatched on the side away from these links.
+    """
+    upright = abs(along.real) < 0.2
+    below = along * -1j if along.real > 0 or upright else along * 1j
+    own = set(points)
+    others = {
+        point for bar in pose.skeleton.bars if own & set(bar.points) for point in bar.points
+    } - own
+    if not others:
+        return below
+    start = pose.points[points[0]]
+    depths = np.concatenate([
+        ((pose.paths.get(name, np.array([pose.points[name]])) - start) * below.conjugate()).real
+        for name in sorted(others)
+    ])  # fmt: skip
+    depths = depths[np.isfinite(depths)]
+    if upright:
+        # an upright line has no lower side: hatch the side away from the links on average
+        return -below if np.mean(depths) > 0.01 * measures.size else below
+    # Without a motion, hatch above only if a link is steeply below the line.
+    clear = 0.0 if pose.paths else 0.5 * max(abs(pose.points[name] - start) for name in others)
+    clear += 1e-6 * measures.size  # a level link does not count as above
+    return -below if np.min(depths, initial=np.inf) > clear else below
+
+
+def track_gaps(found: list[Track], measures: Measures) -> dict[str, list[Gap]]:
+    """The hidden parts of the bars of carrying links, by link."""
+    gaps: dict[str, list[Gap]] = {}
+    for track in found:
+        if track.block:
+            pieces = [(place, measures.block[0] * track.along) for place in track.places]
+        else:
+            reach = abs(track.end - track.start) / 2 + _slot_end(measures)
+            pieces = [((track.start + track.end) / 2, reach * track.along)]
+        gaps.setdefault(track.on, []).extend(pieces)
+    return gaps
+
+
+def guide_symbols(found: list[Track], measures: Measures) -> Iterator[Primitive]:
+    """The symbols of all sliders and slots."""
+    for track in found:
+        if not track.shown:
+            continue
+        if track.block:
+            yield from _blocks(track, measures)
+            yield from _rail(track, measures) if track.fixed else _rod(track, measures)
+        else:
+            yield from _slot(track, measures)
+
+
+def _blocks(track: Track, measures: Measures) -> Iterator[Primitive]:
+    half, height = measures.block
+    along, across = half * track.along, height * track.along * 1j
+    for z in track.places:
+        corners = (z - along - across, z + along - across, z + along + across, z - along + across)
+        yield Polygon(role=Role.SLIDER, of=track.name, points=tuple(map(xy, corners)))
+
+
+def _rail(track: Track, measures: Measures) -> Iterator[Primitive]:
+    """A hatched line under the block, slightly longer than its travel."""
+    half, height = measures.block
+    reach, down = 1.6 * half * track.along, height * track.away
+    start, end = track.start - reach + down, track.end + reach + down
+    yield Polyline(role=Role.GROUND, of=track.name, points=(xy(start), xy(end)))
+    yield hatching(start, end, track.away, measures.hatch, track.name)
+
+
+def _rod(track: Track, measures: Measures) -> Iterator[Primitive]:
+    """The rod of a collar, and an arm to the link if the line is offset."""
+    reach = 1.6 * measures.block[0]
+    foot = track.foot
+    arm = ((track.start - foot) * track.along.conjugate()).imag * track.along * 1j
+    knee = foot + arm
+    ends = [knee, track.start - reach * track.along, track.end + reach * track.along]
+    ends.sort(key=lambda z: (z * track.along.conjugate()).real)
+    hidden = [(place, measures.block[0] * track.along) for place in track.places]
+    for start, end in uncovered(ends[0], ends[-1], hidden):
+        yield _bar(track, start, end)
+    if abs(arm) > 1e-6 * measures.size:
+        yield _bar(track, foot, knee)
+
+
+def _bar(track: Track, start: complex, end: complex) -> Polyline:
+    ends = (xy(start), xy(end))
+    return Polyline(role=Role.LINK, of=track.on, tone=track.tone, points=ends)
+
+
+def _slot_end(measures: Measures) -> float:
+    """The distance from the last position of the pin to the end of its slot."""
+    return measures.slot + 0.8 * measures.pin
+
+
+def _slot(track: Track, measures: Measures) -> Iterator[Primitive]:
+    """Two parallel lines with round ends around the travel of the pin."""
+    width = measures.slot
+    # a fixed slot is drawn longer, like rails
+    reach = _slot_end(measures) + (3 * measures.pin if track.fixed else 0.0)
+    over = (reach - width) * track.along
+    start, end = track.start - over, track.end + over
+    turn = [width * cmath.exp(1j * cmath.pi * (k / 10 - 0.5)) * track.along for k in range(11)]
+    outline = [end + w for w in turn] + [start - w for w in turn]
+    corners = tuple(map(xy, outline))
+    if track.fixed:
+        yield Polyline(role=Role.GROUND, of=track.name, points=corners + corners[:1])
+        down = width * track.away
+        yield hatching(start + down, end + down, track.away, measures.hatch, track.name)
+        return
+    yield Polygon(role=Role.SLOT, of=track.name, tone=track.tone, points=corners)
+    # If all points of the link are off the slot, connect the link to it.
+    length, low, high = (
+        ((z - track.foot) * track.along.conjugate()).real
+        for z in (track.tip, start - width * track.along, end + width * track.along)
+    )
+    if low > length:
+        yield _bar(track, track.tip, start - width * track.along)
+    elif high < 0:
+        yield _bar(track, end + width * track.along, track.foot)

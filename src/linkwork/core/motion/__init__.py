@@ -1,0 +1,41 @@
+"""Positions, whole cycles and rates of a mechanism."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from linkwork.core.foundation.loading import loader
+
+if TYPE_CHECKING:
+    from linkwork.circuits.circuit_list import branch_start as branch_start, circuits as circuits
+    from linkwork.circuits.configuration_list import (
+        configurations as configurations,
+        solve_configuration as solve_configuration,
+        start_in_configuration as start_in_configuration,
+    )
+    from linkwork.circuits.inverting import (
+        driven_otherwise as driven_otherwise,
+        inversion as inversion,
+        inversions as inversions,
+    )
+    from linkwork.core.motion.checking import check as check
+    from linkwork.core.motion.extremes import check_quantities as check_quantities
+    from linkwork.core.motion.failure.remedies import nearest_assembly as nearest_assembly
+    from linkwork.core.motion.higher_rates import derivatives_of as derivatives_of
+    from linkwork.core.motion.iterating import (
+        guessed_points as guessed_points,
+        iterates as iterates,
+        moving_loops as moving_loops,
+        pulled_guess as pulled_guess,
+        vector_loops as vector_loops,
+    )
+    from linkwork.core.motion.model import Model as Model, model_of as model_of
+    from linkwork.core.motion.solving import (
+        as_described as as_described,
+        solve as solve,
+        solve_round_start as solve_round_start,
+    )
+    from linkwork.core.motion.sweeping import sweep as sweep
+    from linkwork.core.motion.whole_turns import warm_started as warm_started
+else:
+    __getattr__ = loader(__name__)

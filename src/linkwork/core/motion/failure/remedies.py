@@ -1,0 +1,528 @@
+"""Dyads in closed form: the closure gap and the positions of one loop with two unknowns.
+
+RRR   K + a e^{iα} + b e^{iβ} = 0      closes if |a - b| ≤ |K| ≤ a + b
+RRP   K + a e^{iα} + s u = 0           closes if the line K + s u comes within a of the origin
+RPR   K + (c + s d) e^{iα} = 0         closes if |K| is at least the distance of the line c + s d
+PP    K + s u + t v = 0                always closes, once, unless the lines are parallel
+"""
+
+from __future__ import annotations
+
+import cmath
+import math
+from collections.abc import Callable, Iterator, Mapping
+from dataclasses import dataclass, field, replace
+from functools import cache
+
+import numpy as np
+
+from linkwork.core.expression.grammar import parse, parse_equation
+from linkwork.core.expression.tree import Binary, Call, Name, Negative, Node, names_in
+from linkwork.core.foundation.arrays import Array
+from linkwork.core.foundation.errors import ExpressionError, InputError
+from linkwork.core.foundation.lanes import phase
+from linkwork.core.foundation.names import GROUND, canonical
+from linkwork.core.mechanism.description import Description
+from linkwork.core.mechanism.dimensions import Number
+from linkwork.core.mechanism.linkage import Linkage
+from linkwork.core.mechanism.loops import Loops
+from linkwork.core.mechanism.varied_numbers import VariedNumber, with_numbers
+from linkwork.core.motion.model import Model, model_of
+from linkwork.core.motion.positions import Named, name_series, target_values
+from linkwork.core.numerics.block_solver import Block
+from linkwork.core.numerics.decomposition import JoinedBlocks, closure_of
+from linkwork.core.numerics.fold import FoldFamily, locate_fold
+from linkwork.core.numerics.newton import nearest_miss
+from linkwork.core.results.failure import Remedy
+from linkwork.core.results.nearest_assembly import LinkEnd, NearestAssembly
+from linkwork.core.table.loop_table import LoopTable
+
+_TOUCHING = 1e-14  # relative: a gap of rounding closes, once
+
+
+@dataclass
+class _Sums:
+    """The terms of the loop, sorted by their angle and their length; keys are unknowns."""
+
+    known: complex = 0j
+    turning: dict[int, complex] = field(default_factory=dict)
+    sliding: dict[int, complex] = field(default_factory=dict)
+    both: dict[tuple[int, int], complex] = field(default_factory=dict)
+
+
+@dataclass(frozen=True, kw_only=True)
+class Dyad:
+    """``gap``: the length that is missing, 0 if it closes. ``roots`` (K, 2): its positions;
+    ``all_roots``: whether these are all. Otherwise it turns freely about a pin that meets another.
+    """
+
+    kind: str
+    gap: float
+    roots: Array
+    all_roots: bool = True
+
+
+def dyad_of(block: Block, v: Array) -> Dyad | None:
+    """The block as a dyad, for the known variables among v (N,); ``None`` if it is no dyad."""
+    table = block.system
+    if not isinstance(table, LoopTable) or table.unknowns != 2 or table.loops.rows != 1:
+        return None
+    if table.functions or len(table.linear.constant):
+        return None
+    sums = _sums(table, v[block.variables])
+    if sums is None:
+        return None
+    turns = [bool(turn) for turn in table.is_angle[:2]]
+    if all(turns) and not sums.both and len(sums.turning) == 2:
+        return _two_links(sums.known, sums.turning[0], sums.turning[1])
+    if not any(turns):
+        return _two_slides(sums.known, sums.sliding.get(0, 0j), sums.sliding.get(1, 0j))
+    angle, length = (0, 1) if turns[0] else (1, 0)
+    found = None
+    if not sums.both:
+        found = _on_a_line(sums.known, sums.turning.get(angle, 0j), sums.sliding.get(length, 0j))
+    elif not sums.sliding:
+        slide = sums.both[angle, length]
+        found = _turning_line(sums.known, sums.turning.get(angle, 0j), slide)
+    if found is None or angle == 0:
+        return found
+    return replace(found, roots=found.roots[:, ::-1])
+
+
+def _sums(table: LoopTable, v: Array) -> _Sums | None:
+    loops, sums = table.loops, _Sums()
+    for t, coefficient in enumerate(loops.coefficient):
+        value, angle = complex(coefficient), None
+        for e in np.flatnonzero(loops.phase_term == t):
+            variable, weight = int(loops.phase_variable[e]), float(loops.phase_weight[e])
+            # known variables come behind the two unknowns: they become part of the coefficient
+            if variable >= 2:
+                value *= cmath.exp(1j * weight * float(v[variable]))
+            elif weight == 1.0 and angle is None:
+                angle = variable
+            else:
+                return None
+        length = int(loops.length[t])
+        if length >= 2:
+            value *= float(v[length])
+        if length < 2 and length >= 0:
+            if angle is None:
+                sums.sliding[length] = sums.sliding.get(length, 0j) + value
+            else:
+                sums.both[angle, length] = sums.both.get((angle, length), 0j) + value
+        elif angle is not None:
+            sums.turning[angle] = sums.turning.get(angle, 0j) + value
+        else:
+            sums.known += value
+    return sums
+
+
+def _dyad(kind: str, gap: float, size: float, roots: list[tuple[float, float]]) -> Dyad:
+    if gap > _TOUCHING * size:
+        return Dyad(kind=kind, gap=gap, roots=np.zeros((0, 2)))
+    return Dyad(kind=kind, gap=0.0, roots=np.array(roots, dtype=float).reshape(-1, 2))
+
+
+def _two_links(known: complex, first: complex, second: complex) -> Dyad:
+    d, a, b = abs(known), abs(first), abs(second)
+    gap = max(d - (a + b), abs(a - b) - d)  # eq. (54)
+    size = max(d, a, b)
+    if d == 0.0 or a == 0.0 or b == 0.0:  # no triangle: none, or a position for every angle
+        return replace(_dyad("RRR", gap, size, []), all_roots=gap > _TOUCHING * size)
+    # the first link makes the angle ±ε with the vector -K that both have to span
+    cosine = (d * d + (a - b) * (a + b)) / (2.0 * d * a)  # eq. (54) without cancellation
+    # only rounding can leave [-1, 1] where the gap is none; other roots are dropped by the gap
+    swing = math.acos(max(-1.0, min(1.0, cosine)))
+    roots = []
+    for side in (1.0, -1.0) if swing not in (0.0, math.pi) else (1.0,):
+        one = -known / d * cmath.exp(1j * side * swing) * a
+        other = -known - one
+        roots.append((phase(one / first), phase(other / second)))
+    return _dyad("RRR", gap, size, roots)
+
+
+def _on_a_line(known: complex, link: complex, along: complex) -> Dyad | None:
+    u, a = abs(along), abs(link)
+    if u == 0.0 or a == 0.0:
+        return None
+    beside = (known * along.conjugate()).imag / u
+    middle = -(known * along.conjugate()).real / u
+    half = math.sqrt(max(0.0, (a - abs(beside)) * (a + abs(beside))))  # eq. (55)
+    roots = []
+    for side in (1.0, -1.0) if half else (1.0,):
+        s = (middle + side * half) / u
+        roots.append((phase(-(known + s * along) / link), s))
+    return _dyad("RRP", abs(beside) - a, max(a, abs(known)), roots)
+
+
+def _turning_line(known: complex, arm: complex, along: complex) -> Dyad | None:
+    u, d = abs(along), abs(known)
+    if u == 0.0:
+        return None
+    beside = (arm * along.conjugate()).imag / u
+    middle = -(arm * along.conjugate()).real / u
+    half = math.sqrt(max(0.0, (d - abs(beside)) * (d + abs(beside))))  # eq. (55)
+    roots = []
+    for side in (1.0, -1.0) if half else (1.0,):
+        s = (middle + side * half) / u
+        reach = arm + s * along
+        if reach != 0:
+            roots.append((phase(-known / reach), s))
+    found = _dyad("RPR", abs(beside) - d, max(d, abs(arm)), roots)
+    return replace(found, all_roots=bool(roots) or found.gap > 0.0)
+
+
+def _two_slides(known: complex, first: complex, second: complex) -> Dyad | None:
+    area = (first.conjugate() * second).imag
+    # parallel lines meet nowhere or everywhere
+    if abs(area) <= _TOUCHING * abs(first) * abs(second):
+        return None
+    s = -(known * second.conjugate()).imag / (first * second.conjugate()).imag
+    t = -(known * first.conjugate()).imag / (second * first.conjugate()).imag
+    return _dyad("PP", 0.0, 1.0, [(s, t)])
+
+
+# ----------------------------------------------------------------------
+# The lengths that a user can change, under the user's names.
+
+
+@dataclass(frozen=True, kw_only=True)
+class ChangeableLength:
+    """A length, its value and the description with another value.
+
+    ``signed``: whether it may be negative, like an offset.
+    """
+
+    name: str
+    value: float
+    changed: Callable[[float], Description]
+    signed: bool = False
+
+
+def model_with(length: ChangeableLength, value: float) -> Model | None:
+    """The mechanism with another value of one length; ``None`` if there is no such mechanism."""
+    try:
+        return model_of(length.changed(value))
+    except InputError:
+        return None
+
+
+def lengths_of(description: Description) -> list[ChangeableLength]:
+    """Named dimensions that are lengths, given and measured lengths, offsets, ground distances.
+
+    The changed descriptions have loops only, without points and outputs that follow from them.
+    """
+    description = replace(description, trace=(), outputs={})
+    if isinstance(description, Loops):
+        description = replace(description, points={}, links={})
+    match description:
+        case Linkage():
+            return [
+                *_dimensions(description, _linkage_names(description)),
+                *_given(description),
+                *_measured(description),
+                *_offsets(description),
+                *_ground(description),
+            ]
+        case Loops():
+            return list(_dimensions(description, _loop_names(description)))
+        case _:
+            return []
+
+
+def _dimensions(description: Description, used: set[str]) -> Iterator[ChangeableLength]:
+    """Dimensions that are plain numbers and serve as a length somewhere."""
+    for name, number in description.dimensions.items():
+        if isinstance(number, str) or canonical(name) not in used:
+            continue
+
+        def changed(value: float, name: str = name) -> Description:
+            return with_numbers(description, {VariedNumber(name, "dimensions", name): value})
+
+        yield ChangeableLength(name=name, value=float(number), changed=changed, signed=number <= 0)
+
+
+def _linkage_names(linkage: Linkage) -> set[str]:
+    """The dimensions in formulas of lengths, coordinates and offsets."""
+    numbers: list[Number] = [*linkage.lengths.values()]
+    numbers += [number for pair in linkage.points.values() for number in pair]
+    numbers += [slider.offset for slider in linkage.sliders]
+    return _resolved(linkage, [tree for number in numbers for tree in _tree(number)])
+
+
+def _loop_names(loops: Loops) -> set[str]:
+    trees: list[Node] = []
+    for text in loops.loops.values():
+        try:
+            trees += parse_equation(text)
+        except ExpressionError:  # such a mechanism cannot have been made
+            continue
+    return _resolved(loops, trees)
+
+
+def _tree(number: Number) -> list[Node]:
+    if not isinstance(number, str):
+        return []
+    try:
+        return [parse(number)]
+    except ExpressionError:
+        return []
+
+
+def _resolved(description: Description, trees: list[Node]) -> set[str]:
+    """The names that are factors or summands, also within the formulas of other dimensions."""
+    formulas = {canonical(n): number for n, number in description.dimensions.items()}
+    found: set[str] = set()
+    while trees:
+        for name in _lengths_in(trees.pop()):
+            if name not in found:
+                found.add(name)
+                trees += _tree(formulas.get(name, 0.0))
+    return found
+
+
+def _lengths_in(node: Node) -> Iterator[str]:
+    """Names outside exponents and arguments of functions: those inside are angles."""
+    match node:
+        case Name():
+            yield node.name
+        case Negative():
+            yield from _lengths_in(node.operand)
+        case Binary("^"):
+            yield from _lengths_in(node.left)
+        case Binary():
+            yield from _lengths_in(node.left)
+            yield from _lengths_in(node.right)
+        case Call("sqrt" | "abs"):
+            yield from (name.name for name in names_in(node))
+
+
+def _given(linkage: Linkage) -> Iterator[ChangeableLength]:
+    """Lengths that are plain numbers; a ground distance moves the point."""
+    ground = set(linkage.links[GROUND])
+    for key, number in linkage.lengths.items():
+        # the distance of two ground points is changed by moving one of them, see _ground
+        if isinstance(number, str) or set(key.split()) <= ground:
+            continue
+
+        def changed(value: float, key: str = key) -> Description:
+            return replace(linkage, lengths={**linkage.lengths, key: value})
+
+        yield ChangeableLength(name=key, value=float(number), changed=changed)
+
+
+def _measured(linkage: Linkage) -> Iterator[ChangeableLength]:
+    for measured in linkage.shapes.measured:
+        key = " ".join(measured.points)
+
+        def changed(value: float, key: str = key) -> Description:
+            return replace(linkage, lengths={**linkage.lengths, key: value})
+
+        yield ChangeableLength(name=key, value=measured.length, changed=changed)
+
+
+def _offsets(linkage: Linkage) -> Iterator[ChangeableLength]:
+    for k, slider in enumerate(linkage.sliders):
+        if isinstance(slider.offset, str):
+            continue
+
+        def changed(value: float, k: int = k) -> Description:
+            parts = list(linkage.sliders)
+            parts[k] = replace(parts[k], offset=value)
+            return replace(linkage, sliders=tuple(parts))
+
+        name = f"offset of {slider.name}"
+        yield ChangeableLength(name=name, value=float(slider.offset), changed=changed, signed=True)
+
+
+def _ground(linkage: Linkage) -> Iterator[ChangeableLength]:
+    """The distance of every pivot on ground from the first one, along the line between them.
+
+    Points that only carry lines are left alone: moving one would turn its line.
+    """
+    lines = {p for slot in linkage.slots for p in slot.line}
+    lines |= {p for slider in linkage.sliders for p in slider.line}
+    pivots = [p for p in linkage.links[GROUND] if p not in lines]
+    numbers = all(not isinstance(n, str) for p in pivots for n in linkage.points[p])
+    if not pivots or not numbers:
+        return
+    first = pivots[0]
+    base = linkage.sketched(first)
+    for pivot in pivots[1:]:
+        span = linkage.sketched(pivot) - base
+        pair = (f"{first} {pivot}", f"{pivot} {first}")
+        if any(isinstance(linkage.lengths.get(key), str) for key in pair):
+            continue
+
+        def changed(
+            value: float, pivot: str = pivot, span: complex = span, pair: tuple[str, str] = pair
+        ) -> Description:
+            place = base + span / abs(span) * value
+            lengths = {k: value if k in pair else old for k, old in linkage.lengths.items()}
+            points = {**linkage.points, pivot: (place.real, place.imag)}
+            return replace(linkage, points=points, lengths=lengths)
+
+        name = pair[1] if pair[1] in linkage.lengths else pair[0]
+        yield ChangeableLength(name=name, value=abs(span), changed=changed)
+
+
+# ----------------------------------------------------------------------
+# Changes of single lengths with which the loops just close.
+
+
+_MOST_LENGTHS = 40
+_MOST_UNKNOWNS = 80
+_STEP = 1e-6  # of the longest link, for derivatives by a length
+_ROUND = 4e-15  # of the longest link: a length this near to a short decimal number is that number
+
+
+def remedies_of(model: Model, number: int, v: Array) -> tuple[Remedy, ...]:
+    """The lengths that alone would let a block just close, smallest change first.
+
+    Parameters
+    ----------
+    number : int
+        The block that cannot be closed.
+    v : (N,)
+        With the earlier blocks solved, and this block as near to closure as possible.
+
+    Notes
+    -----
+    The block and those it depends on are one family of systems with the length as parameter; the
+    value with which they just close is a fold of that family.
+    """
+    solver = model.compiled.solver
+    members = closure_of(solver, number)
+    joined = JoinedBlocks(solver, members)
+    if joined.unknowns > _MOST_UNKNOWNS:
+        return ()
+    exact = all(
+        len(solver.blocks[k].unknowns) == 1 or dyad_of(solver.blocks[k], v) for k in members
+    )
+    found = []
+    for length in lengths_of(model.description)[:_MOST_LENGTHS]:
+        needed = _needed(model, length, members, v)
+        if needed is not None:
+            remedy = Remedy(length=length.name, now=length.value, needed=needed, exact=bool(exact))
+            found.append(remedy)
+    return tuple(sorted(found, key=lambda r: float(f"{abs(r.change):.9e}")))
+
+
+def _needed(model: Model, length: ChangeableLength, members: list[int], v: Array) -> float | None:
+    """The value of one length with which the blocks just close, if there is one."""
+    solver = model.compiled.solver
+    own = [solver.blocks[k].equations for k in members]
+    joined = JoinedBlocks(solver, members)
+    n, size = joined.unknowns, model.equations.length_scale
+
+    @cache
+    def at(p: float) -> JoinedBlocks:
+        changed = model_with(length, p)
+        if changed is None:
+            raise ValueError(f"no mechanism has {length.name} = {p}")
+        blocks = changed.compiled.solver.blocks
+        # with another topology the unknowns would not correspond
+        if [blocks[k].equations for k in members] != own:
+            raise ValueError(f"other blocks with {length.name} = {p}")
+        return JoinedBlocks(changed.compiled.solver, members)
+
+    step = _STEP * size
+    try:
+        family = FoldFamily(
+            at=at,
+            inputs=v[solver.unknowns :],
+            low=at(length.value - step),
+            high=at(length.value + step),
+            step=2.0 * step,
+            size=size,
+        )
+    except (ValueError, IndexError):
+        return None
+    fold = locate_fold(family, v[joined.order[:n]], length.value)
+    # a fold without a solution next to it would be no remedy
+    if fold is None or not fold.checked or (fold.p <= 0.0 and not length.signed):
+        return None
+    # a special value, such as the sum of two lengths, is meant exactly
+    short = float(np.round(fold.p, 9))
+    return short if abs(short - fold.p) <= _ROUND * size else fold.p
+
+
+# ----------------------------------------------------------------------
+# The position nearest to closure of a mechanism whose loops do not close.
+
+
+_MEETS = 1e-9  # of the longest link: ends this near to their joint meet it
+
+
+def nearest_assembly(
+    model: Model, at: float | Mapping[str, float] | None = None
+) -> NearestAssembly:
+    """The position near the guess at which the loops stay open by least.
+
+    Every block of equations in turn is brought as near to zero as a damped iteration gets it,
+    min ‖F(q, u)‖², with the blocks before it as they came out.
+
+    Parameters
+    ----------
+    at : number or Mapping[str, number], optional
+        Input value(s) in file units; the guess's own if left out.
+
+    Raises
+    ------
+    UnknownNameError, InputError
+        For input values that do not fit the mechanism.
+
+    Notes
+    -----
+    A local minimum; where the mechanism can be closed, usually a position of it with gap 0.
+    """
+    solver, equations = model.compiled.solver, model.equations
+    target = target_values(model, at)
+    v = equations.start.copy()
+    v[solver.unknowns :] = target * model.input_scale
+    with np.errstate(all="ignore"):
+        for block in solver.blocks:
+            nearest, _ = nearest_miss(block.system, v[block.variables])
+            # later blocks start from this position, though it may not close
+            v[block.unknowns] = nearest[: len(block.unknowns)]
+        f = model.compiled.table.residual(v[None, :])[0]
+    none = np.zeros((1, len(v)))
+    named = name_series(model, v[None, :], none, none, target[None, :], np.ones(1, dtype=bool))
+    count = len(equations.loops)
+    vectors = f[:count] + 1j * f[count : 2 * count]
+    points = {p: (float(x.value[0]), float(y.value[0])) for p, (x, y) in named.points.items()}
+    return NearestAssembly(
+        mechanism=model.description.name,
+        units=model.units,
+        skeleton=model.skeleton,
+        input={name: float(values[0]) for name, values in named.inputs.items()},
+        unknowns={name: float(series.value[0]) for name, series in named.unknowns.items()},
+        points=points,
+        gaps={
+            loop.label: (float(gap.real), float(gap.imag))
+            for loop, gap in zip(equations.loops, vectors, strict=True)
+        },
+        gap=float(np.linalg.norm(vectors)),
+        apart=open_ends(model, named, points),
+    )
+
+
+def open_ends(
+    model: Model, named: Named, points: Mapping[str, tuple[float, float]], row: int = 0
+) -> tuple[LinkEnd, ...]:
+    """The ends of rigid links that lie elsewhere than the joints they belong to, in a row."""
+    linkage = model.description
+    if not isinstance(linkage, Linkage):
+        return ()
+    found = []
+    for link, local in linkage.shapes.local.items():
+        if link == GROUND or link not in named.links or len(local) < 2:
+            continue
+        angle = float(named.links[link].value[row]) * linkage.angle.radians
+        first = next(iter(linkage.links[link]))
+        for point, place in local.items():
+            end = complex(*points[first]) + (place - local[first]) * cmath.exp(1j * angle)
+            if abs(end - complex(*points[point])) > _MEETS * model.equations.length_scale:
+                here = (float(end.real), float(end.imag))
+                found.append(LinkEnd(link=link, point=point, joint=points[point], end=here))
+    return tuple(found)

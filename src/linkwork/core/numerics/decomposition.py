@@ -1,0 +1,384 @@
+"""Block-triangular form: which equations determine which unknowns, and in which order.
+
+Maximum bipartite matching of equations to unknowns, then strong components of the dependence
+graph (Duff, Erisman & Reid, Direct Methods for Sparse Matrices, ch. 6; Dulmage & Mendelsohn 1958).
+"""
+
+from __future__ import annotations
+
+from collections import deque
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+
+from linkwork.core.foundation.arrays import Array, BoolArray, IndexArray
+from linkwork.core.numerics.block_solver import Block, BlockSolver
+
+
+@dataclass(frozen=True, kw_only=True)
+class BlockForm:
+    """The square blocks in solving order, and the parts that are not square.
+
+    ``blocks`` : (equations, unknowns) per block. ``overdetermined`` : equations of the part with
+    more equations than unknowns. ``underdetermined`` : unknowns of the part with more unknowns.
+    ``conflict_unknowns`` : the unknowns in the overdetermined part; ``surplus`` and ``missing``
+    count by how many real equations each part is off.
+    """
+
+    blocks: tuple[tuple[tuple[int, ...], tuple[int, ...]], ...]
+    overdetermined: tuple[int, ...] = ()
+    conflict_unknowns: tuple[int, ...] = ()
+    underdetermined: tuple[int, ...] = ()
+    surplus: int = 0
+    missing: int = 0
+
+    @property
+    def square(self) -> bool:
+        """Whether every unknown is determined by the blocks."""
+        return not self.surplus and not self.missing
+
+
+def block_form(pattern: Sequence[Sequence[int]], count: Sequence[int], unknowns: int) -> BlockForm:
+    """Decompose equations into irreducible blocks.
+
+    Parameters
+    ----------
+    pattern : sequence of sequences of int
+        The unknowns (0 … unknowns-1) in each equation.
+    count : sequence of int
+        Real rows per equation: 2 for a complex loop, 1 for a real equation. Rows of one equation
+        stay in one block.
+    unknowns : int
+
+    Notes
+    -----
+    O(rows · √rows) for the matching, linear for the rest.
+    """
+    owner = [e for e, rows in enumerate(count) for _ in range(rows)]
+    columns = [pattern[e] for e in owner]
+    row_of, column_of = _matching(columns, unknowns)
+    users: list[list[int]] = [[] for _ in range(unknowns)]
+    for row, used in enumerate(columns):
+        for column in used:
+            users[column].append(row)
+    over_rows, over_columns = _reach_from_rows(columns, row_of, column_of)
+    under_columns = _reach_from_columns(users, row_of, column_of)
+    graph: list[set[int]] = [set() for _ in pattern]
+    for row, used in enumerate(columns):
+        for column in used:
+            other = row_of[column]
+            # an edge from a block to the block that determines what it uses
+            if other >= 0 and owner[other] != owner[row]:
+                graph[owner[row]].add(owner[other])
+    rows_of: list[list[int]] = [[] for _ in pattern]
+    for row, equation in enumerate(owner):
+        rows_of[equation].append(row)
+    finished = tuple(
+        (
+            equations,
+            tuple(sorted(column_of[r] for e in equations for r in rows_of[e] if column_of[r] >= 0)),
+        )
+        for equations in (tuple(sorted(c)) for c in _strong_components(graph))
+    )
+    return BlockForm(
+        blocks=finished,
+        overdetermined=tuple(sorted({owner[row] for row in over_rows})),
+        conflict_unknowns=tuple(sorted(over_columns)),
+        underdetermined=tuple(sorted(under_columns)),
+        surplus=sum(1 for column in column_of if column < 0),
+        missing=sum(1 for row in row_of if row < 0),
+    )
+
+
+def _matching(columns: Sequence[Sequence[int]], unknowns: int) -> tuple[list[int], list[int]]:
+    """Hopcroft & Karp 1973: (row of each column, column of each row), -1 where unmatched."""
+    row_of = [-1] * unknowns
+    column_of = [-1] * len(columns)
+    # rows with few unknowns first: the greedy matching leaves less to augment
+    for row in sorted(range(len(columns)), key=lambda r: len(columns[r])):
+        for column in columns[row]:
+            if row_of[column] < 0:
+                row_of[column], column_of[row] = row, column
+                break
+    while True:
+        level = _levels(columns, row_of, column_of)
+        if level is None:
+            return row_of, column_of
+        next_edge = [0] * len(columns)
+        for row in range(len(columns)):
+            if column_of[row] < 0:
+                _augment(row, columns, level, next_edge, row_of, column_of)
+
+
+def _levels(
+    columns: Sequence[Sequence[int]], row_of: list[int], column_of: list[int]
+) -> list[int] | None:
+    level = [0 if column < 0 else -1 for column in column_of]
+    queue = deque(row for row, k in enumerate(level) if k == 0)
+    reachable = False
+    while queue:
+        row = queue.popleft()
+        for column in columns[row]:
+            other = row_of[column]
+            if other < 0:
+                reachable = True
+            elif level[other] < 0:
+                level[other] = level[row] + 1
+                queue.append(other)
+    return level if reachable else None
+
+
+def _augment(
+    root: int,
+    columns: Sequence[Sequence[int]],
+    level: list[int],
+    next_edge: list[int],
+    row_of: list[int],
+    column_of: list[int],
+) -> None:
+    path = [root]
+    while path:
+        row = path[-1]
+        if next_edge[row] == len(columns[row]):
+            level[row] = -1
+            path.pop()
+            continue
+        column = columns[row][next_edge[row]]
+        other = row_of[column]
+        if other < 0:
+            for r in reversed(path):
+                taken = columns[r][next_edge[r]]
+                row_of[taken], column_of[r] = r, taken
+            return
+        if level[other] == level[row] + 1 and next_edge[other] < len(columns[other]):
+            path.append(other)
+        else:
+            next_edge[row] += 1
+
+
+def _reach_from_rows(
+    columns: Sequence[Sequence[int]], row_of: list[int], column_of: list[int]
+) -> tuple[set[int], set[int]]:
+    """Rows and columns on alternating paths from unmatched rows: the overdetermined part."""
+    rows = {row for row, column in enumerate(column_of) if column < 0}
+    found: set[int] = set()
+    queue = deque(rows)
+    while queue:
+        for column in columns[queue.popleft()]:
+            if column in found:
+                continue
+            found.add(column)
+            other = row_of[column]
+            if other >= 0 and other not in rows:
+                rows.add(other)
+                queue.append(other)
+    return rows, found
+
+
+def _reach_from_columns(
+    users: Sequence[Sequence[int]], row_of: list[int], column_of: list[int]
+) -> set[int]:
+    """Columns on alternating paths from unmatched columns: the underdetermined part."""
+    found = {column for column, row in enumerate(row_of) if row < 0}
+    queue = deque(found)
+    while queue:
+        for row in users[queue.popleft()]:
+            other = column_of[row]
+            if other >= 0 and other not in found:
+                found.add(other)
+                queue.append(other)
+    return found
+
+
+def _strong_components(graph: Sequence[set[int]]) -> list[list[int]]:
+    """Tarjan 1972, without recursion; a component comes after those it depends on."""
+    index = [-1] * len(graph)
+    low = [0] * len(graph)
+    on_stack = [False] * len(graph)
+    stack: list[int] = []
+    found: list[list[int]] = []
+    counter = 0
+    for root in range(len(graph)):
+        if index[root] >= 0:
+            continue
+        work = [(root, iter(sorted(graph[root])))]
+        index[root] = low[root] = counter
+        counter += 1
+        stack.append(root)
+        on_stack[root] = True
+        while work:
+            node, successors = work[-1]
+            for following in successors:
+                if index[following] < 0:
+                    index[following] = low[following] = counter
+                    counter += 1
+                    stack.append(following)
+                    on_stack[following] = True
+                    work.append((following, iter(sorted(graph[following]))))
+                    break
+                if on_stack[following]:
+                    low[node] = min(low[node], index[following])
+            else:
+                work.pop()
+                if work:
+                    low[work[-1][0]] = min(low[work[-1][0]], low[node])
+                if low[node] == index[node]:
+                    component: list[int] = []
+                    while True:
+                        member = stack.pop()
+                        on_stack[member] = False
+                        component.append(member)
+                        if member == node:
+                            break
+                    found.append(component)
+    return found
+
+
+# ----------------------------------------------------------------------
+# Blocks put together again: one system of a block and everything it depends on.
+
+
+def closure_of(solver: BlockSolver, number: int) -> list[int]:
+    """The blocks that a block depends on, itself last, in solving order."""
+    home = {int(u): k for k, block in enumerate(solver.blocks) for u in block.unknowns}
+    wanted, open_ = {number}, [number]
+    while open_:
+        block = solver.blocks[open_.pop()]
+        for known in block.variables[len(block.unknowns) :]:
+            before = home.get(int(known))
+            if before is not None and before not in wanted:
+                wanted.add(before)
+                open_.append(before)
+    return sorted(wanted)
+
+
+@dataclass(frozen=True)
+class JoinedBlocks:
+    """Several blocks as one system over all variables of the whole.
+
+    Variables are the blocks' unknowns in solving order, then the inputs of the whole.
+
+    Parameters
+    ----------
+    solver : BlockSolver
+    members : sequence of int
+        Block numbers, closed under dependence.
+    """
+
+    solver: BlockSolver
+    members: Sequence[int]
+
+    @cached_property
+    def blocks(self) -> list[Block]:
+        """The member blocks."""
+        return [self.solver.blocks[k] for k in self.members]
+
+    @cached_property
+    def order(self) -> IndexArray:
+        """The variables of the whole in this system's order."""
+        own = [block.unknowns for block in self.blocks]
+        inputs = np.arange(self.solver.unknowns, self.solver.variables)
+        return np.concatenate([*own, inputs]).astype(np.intp)
+
+    @property
+    def unknowns(self) -> int:
+        """n."""
+        return sum(len(block.unknowns) for block in self.blocks)
+
+    @property
+    def equation_scale(self) -> Array:
+        """(n,)."""
+        return np.concatenate([block.system.equation_scale for block in self.blocks])
+
+    @property
+    def variable_scale(self) -> Array:
+        """(N,)."""
+        return self.solver.variable_scale[self.order]
+
+    @property
+    def is_angle(self) -> BoolArray:
+        """(N,)."""
+        found = np.zeros(self.solver.variables, dtype=bool)
+        for block in self.blocks:
+            found[block.variables] |= block.system.is_angle
+        return found[self.order]
+
+    @property
+    def single(self) -> None:
+        """The blocks are joined as arrays only."""
+
+    def _whole(self, v: Array) -> Array:
+        whole = np.zeros((len(v), self.solver.variables))
+        whole[:, self.order] = v
+        return whole
+
+    def residual(self, v: Array) -> Array:
+        """F, (B, n)."""
+        whole = self._whole(v)
+        parts = [block.system.residual(whole[:, block.variables]) for block in self.blocks]
+        return np.concatenate(parts, axis=1)
+
+    def exact_residual(self, v: Array) -> tuple[Array, Array]:
+        """F at one position v (N,), (n,), with as little rounding as the equations allow, and a
+        bound of its error.
+        """
+        whole = self._whole(v[None, :])[0]
+        parts = [block.system.exact_residual(whole[block.variables]) for block in self.blocks]
+        values, errors = zip(*parts, strict=True)
+        return np.concatenate(values), np.concatenate(errors)
+
+    def jacobian(self, v: Array) -> Array:
+        """dF/dv, (B, n, N)."""
+        return self.residual_and_jacobian(v)[1]
+
+    def residual_and_jacobian(self, v: Array) -> tuple[Array, Array]:
+        """F, (B, n), and dF/dv, (B, n, N)."""
+        whole = self._whole(v)
+        order = self.order
+        # columns of the whole in this system's order
+        place = np.full(self.solver.variables, -1)
+        place[order] = np.arange(len(order))
+        residual, jacobian = [], np.zeros((len(v), self.unknowns, len(order)))
+        row = 0
+        for block in self.blocks:
+            f, slope = block.system.residual_and_jacobian(whole[:, block.variables])
+            residual.append(f)
+            rows = np.arange(row, row + f.shape[1])
+            jacobian[:, rows[:, None], place[block.variables][None, :]] = slope
+            row += f.shape[1]
+        return np.concatenate(residual, axis=1), jacobian
+
+    def second_directional_derivative(self, v: Array, d: Array) -> Array:
+        """D²F[d, d], (B, n)."""
+        whole, direction = self._whole(v), self._whole(d)
+        parts = [
+            block.system.second_directional_derivative(
+                whole[:, block.variables], direction[:, block.variables]
+            )
+            for block in self.blocks
+        ]
+        return np.concatenate(parts, axis=1)
+
+    def hessians(self, v: Array, weights: Array) -> Array:
+        """Second derivatives of K sums of equations, (K, N, N), with ``weights`` (K, n)."""
+        whole, order = self._whole(v[None, :])[0], self.order
+        found = np.zeros((len(weights), self.solver.variables, self.solver.variables))
+        row = 0
+        for block in self.blocks:
+            own, n = block.variables, len(block.unknowns)
+            found[:, own[:, None], own] += block.system.hessians(
+                whole[own], weights[:, row : row + n]
+            )
+            row += n
+        return found[:, order[:, None], order]
+
+    def mixed(self, v: Array, a: Array, b: Array) -> Array:
+        """D²F[a, b], (B, n), by polarisation."""
+        # eq. (5)
+        half: Array = 0.25 * (
+            self.second_directional_derivative(v, a + b)
+            - self.second_directional_derivative(v, a - b)
+        )
+        return half

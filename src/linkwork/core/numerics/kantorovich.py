@@ -1,0 +1,362 @@
+"""Proof that a solution exists near computed numbers: Newton-Kantorovich with explicit constants.
+
+For F(x) = 0, A ≈ J(x0)⁻¹ and the weighted norm ‖x‖ = max |x_i|/w_i let
+
+    Y ≥ ‖A F(x0)‖,   Z0 ≥ ‖I - A J(x0)‖,   ω ≥ Lipschitz constant of A J within ρ of x0.
+
+There is exactly one solution within min(r+, ρ) of x0, and it lies within r-, if
+
+    (1 - Z0)² > 2 ω Y,
+    r± = [(1 - Z0) ± √((1 - Z0)² - 2 ω Y)] / ω
+
+(Kantorovich 1948; Rump 2010, doi:10.1017/S096249291000005X). With ω = ω0 + ω1 ρ, ρ is chosen so
+that the uniqueness radius just fits in:
+
+    ρ (ω0 + ω1 ρ) = 2 (1 - Z0).
+
+All constants include the rounding of their own computation. Known quantities (inputs, unknowns of
+blocks solved before) may be uncertain: the proof then holds for every value in their intervals.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from linkwork.core.foundation.arrays import Array, BoolArray, IndexArray, matrix_vector
+from linkwork.core.foundation.rounding import PROOF_SLACK, UNIT_ROUNDOFF
+from linkwork.core.numerics.block_solver import BlockSolver, Linearised
+from linkwork.core.numerics.system import System
+
+# Rounds in which weights are fitted; empirical, any number near it serves. The bounds are computed
+# for the weights found, so that too few rounds can lose a proof, but never give a wrong one.
+FITTINGS = 4
+# c and d of fitted weights. In them Y ≤ 1, and every row has c ω + d Z ≤ 1. If one row has both
+# largest values, (1 - Z)² - 2 ω Y is at least (1 - 2/c) + 2 (d/c - 1) Z + Z²: positive for c > 2
+# and d ≥ c. With these it is 0.2 or more, room for rounds that have not converged.
+BENDING, SHIFTING = 2.5, 3.0
+LEAST = 1e-12  # of the largest weight: an unknown that does not move has this one
+MOST = 1e3  # of the usual weight: where the proof fails weights grow without end
+TINY = 1e-200
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Bounds:
+    """The constants row by row, (B, n), in units of the weights: largest entries are Y, Z0, ω.
+
+    The Lipschitz constant within ρ is ``omega`` + ρ ``omega_slope``.
+    """
+
+    y: Array
+    z: Array
+    omega: Array
+    omega_slope: Array
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Radii:
+    """Results of proofs, (B,): ``holds``; a solution within ``existence_radius``, no other within
+    ``uniqueness_radius``.
+
+    ``error_bound`` (B, n): a bound of every unknown's error in its own unit, never larger than
+    ``existence_radius`` times its weight. ``isolation_radius`` (B, n): ``uniqueness_radius`` in
+    their own units.
+    """
+
+    holds: BoolArray
+    existence_radius: Array
+    uniqueness_radius: Array
+    error_bound: Array
+    isolation_radius: Array
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Expansion:
+    """A system at B positions, multiplied by an approximate inverse A of its Jacobian.
+
+    All data that a proof needs, whatever the uncertainty of the p known variables.
+
+    ``residual`` (B, n): |A F| with its rounding and that of printing the unknowns. ``defect``
+    (B, n, n): |I - A J|. ``slope`` (B, n, p): |A F_k| by the known variables; ``lines`` (B, n, p):
+    the part of linear rows. ``phase`` (B, n, G), ``slide`` (B, n, P) and the rest: see
+    :class:`Curvature`; rows whose phases are not those of loops are among ``lines``.
+    """
+
+    residual: Array
+    defect: Array
+    slope: Array
+    lines: Array
+    loop_phases: int
+    phase: Array
+    slide: Array
+    weights: Array
+    pair_length: IndexArray
+    pair_group: IndexArray
+
+    def take(self, index: IndexArray | slice) -> Expansion:
+        """At some of the positions, in the order of ``index``."""
+        return replace(
+            self,
+            residual=self.residual[index],
+            defect=self.defect[index],
+            slope=self.slope[index],
+            lines=self.lines[index],
+            phase=self.phase[index],
+            slide=self.slide[index],
+        )
+
+
+def expansion(
+    system: System, v: Array, jacobian: Array, matrix: Array, *, exact: bool = False
+) -> Expansion:
+    """A system at B positions.
+
+    Parameters
+    ----------
+    system : System
+        With n unknowns followed by p known variables; ``has_curvature_bound`` must hold.
+    v : (B, N)
+    jacobian : (B, n, N)
+        dF/dv at v.
+    matrix : (B, n, n)
+        A, any approximate inverse of the Jacobian by the unknowns.
+    exact : bool
+        Take residuals that are rounded once: slow, for places where rounding decides.
+    """
+    n = system.unknowns
+    bend = system.curvature(v, matrix)
+    size, rest = np.abs(matrix), slice(bend.loop_rows, None)
+    loss = size @ bend.jacobian_rounding
+    f, rounding, slope = system.residual(v), bend.rounding, jacobian[:, :, n:]
+    printing = bend.printing
+    if exact:
+        # near change points the rounding of F decides where a dead point lies
+        f, rounding = (np.stack(part) for part in zip(*map(system.exact_residual, v), strict=True))
+        printing = np.zeros_like(printing)
+    lines = np.abs(matrix[:, :, rest] @ slope[:, rest])
+    return Expansion(
+        residual=np.abs(matrix_vector(matrix, f))  # eq. (25): Y
+        + matrix_vector(size, rounding + (n + 2) * UNIT_ROUNDOFF * np.abs(f))
+        + printing,
+        defect=np.abs(np.eye(n) - matrix @ jacobian[:, :, :n]) + loss[:, :, :n],  # eq. (25): Z0
+        slope=np.abs(matrix @ slope) + loss[:, :, n:],
+        lines=lines + size[:, :, rest] @ bend.jacobian_rounding[:, rest, n:],
+        loop_phases=bend.loop_phases,
+        phase=bend.phase,
+        slide=bend.slide,
+        weights=bend.weights,
+        pair_length=bend.pair_length,
+        pair_group=bend.pair_group,
+    )
+
+
+class Majorant:
+    """How far a solution may be, unknown by unknown: x with y + Z x + ½ M(x, x) ≤ x.
+
+    The constants of the proof before weights are chosen, for B positions.
+
+    Parameters
+    ----------
+    at : Expansion
+    known : (B, p)
+        How far each known variable may be from its value, in its own unit.
+
+    Notes
+    -----
+    A change δ of a phase e^{iψ} is split as iδ plus at most δ²/2, or bounded by |δ| as a whole,
+    whichever is smaller row by row.
+    """
+
+    def __init__(self, at: Expansion, known: Array) -> None:
+        n = at.residual.shape[1]
+        self.defect, self.turning = at.defect, at.weights[:n]
+        self.turned = known @ at.weights[n:]  # (B, G): how far the known angles turn each phase
+        # terms with a variable length, split into those with an unknown and with a known length
+        mine = np.flatnonzero(at.pair_length < n)
+        given = np.flatnonzero(at.pair_length >= n)
+        self.lengths, self.free_group = at.pair_length[mine], at.pair_group[mine]
+        self.held_group = at.pair_group[given]
+        self.spread = known[:, at.pair_length[given] - n]
+        #: |A D²F| of every phase, of pairs with an unknown length, of those with a known one.
+        self.bent = at.phase
+        if len(at.pair_length):
+            self.bent = np.concatenate([at.phase, at.slide[:, :, [*mine, *given]]], axis=2)
+        self.y = at.residual
+        if known.any():
+            self.y = at.residual + self._shift(at, known)
+
+    def _shift(self, at: Expansion, known: Array) -> Array:
+        """How far the known variables move the residual, (B, n)."""
+        # eq. (31)
+        square = 0.5 * self.turned**2
+        none = np.zeros((len(known), len(self.lengths)))
+        by_slope = [square, none, self.spread * self.turned[:, self.held_group]]
+        # a law's phase is a second derivative, no bound of the change itself
+        loops = at.loop_phases
+        as_a_whole = [self.turned[:, :loops], square[:, loops:], none, self.spread]
+        return np.minimum(
+            matrix_vector(at.slope, known) + matrix_vector(self.bent, np.hstack(by_slope)),
+            matrix_vector(at.lines, known) + matrix_vector(self.bent, np.hstack(as_a_whole)),
+        )
+
+    def _linear(self, x: Array, own: Array) -> Array:
+        """What Z x takes of every phase and pair; ``own`` (B, G): how far x (B, n) turns phases."""
+        found: Array = own * self.turned
+        if self.lengths.size or self.held_group.size:
+            free = x[:, self.lengths] * self.turned[:, self.free_group]
+            found = np.concatenate([found, free, self.spread * own[:, self.held_group]], axis=1)
+        return found
+
+    def _quadratic(self, x: Array, own: Array) -> Array:
+        """What M(x, x) takes of every phase and pair."""
+        square = own * own
+        found: Array = square  # eq. (30)
+        if self.lengths.size or self.held_group.size:
+            free = 2.0 * x[:, self.lengths] * own[:, self.free_group]
+            found = np.concatenate([found, free, self.spread * square[:, self.held_group]], axis=1)
+        return found
+
+    def _cubic(self, x: Array, own: Array) -> Array:
+        """The growth of M(x, x) where unknown lengths have changed by x (B, n), (B, n)."""
+        if not self.lengths.size:
+            return np.zeros_like(self.y)
+        begin = own.shape[1]
+        free = self.bent[:, :, begin : begin + len(self.lengths)]
+        # eq. (30): the part that grows with ρ
+        return matrix_vector(free, x[:, self.lengths] * own[:, self.free_group] ** 2)
+
+    def bounds(self, weights: Array) -> Bounds:
+        """The constants in weights (n,) or (B, n)."""
+        w = np.broadcast_to(weights, self.y.shape)
+        own, share = w @ self.turning, PROOF_SLACK / w
+        linear = matrix_vector(self.defect, w) + matrix_vector(self.bent, self._linear(w, own))
+        return Bounds(
+            y=self.y * share,
+            z=linear * share,
+            omega=matrix_vector(self.bent, self._quadratic(w, own)) * share,
+            omega_slope=self._cubic(w, own) * share,
+        )
+
+    def fit_weights(self, scale: Array) -> Array:
+        """Weights (B, n) in which the proof nearly always succeeds where there are any such.
+
+        An unknown's weight is how far it may move: y, or the effect of the others. With
+        w ≥ y, w ≥ c M(w, w) and w ≥ d Z w the rows of the proof are balanced, whatever the ratio
+        of the lengths; a long link that hardly turns does not spoil the proof of a short one.
+
+        Parameters
+        ----------
+        scale : (n,)
+            The usual weights.
+        """
+        largest = (self.y / scale).max(axis=1, keepdims=True)
+        start: Array = np.maximum(self.y, np.maximum(LEAST * largest, TINY) * scale)
+        w, most, defect = start, MOST * scale, SHIFTING * self.defect
+        for _ in range(FITTINGS):
+            own = w @ self.turning
+            both = BENDING * self._quadratic(w, own) + SHIFTING * self._linear(w, own)
+            grown = matrix_vector(defect, w) + matrix_vector(self.bent, both)  # eq. (32)
+            # where the proof fails weights would grow without end
+            w = np.maximum(start, np.minimum(grown, most))
+        return w
+
+
+def radii(y: Array, z: Array, omega: Array, slope: Array) -> tuple[BoolArray, Array, Array, Array]:
+    """Whether the theorem holds, r-, the uniqueness radius and ρ, from Y, Z0, ω0 and ω1 (B,)."""
+    room = 1.0 - z
+    with np.errstate(all="ignore"):
+        rho = np.where(  # eq. (28)
+            slope > 0.0,
+            4.0 * room / (omega + np.sqrt(omega**2 + 8.0 * slope * np.maximum(room, 0.0))),
+            2.0 * room / omega,
+        )
+        whole = omega + np.where(slope > 0.0, rho * slope, 0.0)
+        square = room**2 - 2.0 * whole * y * PROOF_SLACK
+        holds = (room > 0.0) & (square > 0.0)  # eq. (26)
+        root = np.sqrt(square)
+        # eq. (27): r- without cancellation; without curvature r- = Y/(1 - Z0) and r+ = ∞
+        existence = np.where(holds, 2.0 * y / (room + root) * PROOF_SLACK, np.inf)
+        uniqueness = np.where(holds, np.minimum((room + root) / whole, rho) / PROOF_SLACK, 0.0)
+    return holds, existence, uniqueness, rho
+
+
+def weighted_radii(b: Bounds, weights: Array) -> Radii:
+    """Existence and uniqueness from the constants, unknown by unknown."""
+    holds, existence, uniqueness, rho = radii(
+        b.y.max(axis=1), b.z.max(axis=1), b.omega.max(axis=1), b.omega_slope.max(axis=1)
+    )
+    with np.errstate(all="ignore"):
+        bent = b.omega + np.where(b.omega_slope > 0.0, rho[:, None] * b.omega_slope, 0.0)
+        # eq. (29)
+        error_bound = b.y + b.z * existence[:, None] + 0.5 * bent * existence[:, None] ** 2
+    return Radii(
+        holds=holds,
+        existence_radius=existence,
+        uniqueness_radius=uniqueness,
+        error_bound=np.minimum(error_bound * PROOF_SLACK, existence[:, None]) * weights,
+        isolation_radius=uniqueness[:, None] * weights / PROOF_SLACK,
+    )
+
+
+# ----------------------------------------------------------------------
+# How far a motion in a box is at most from its tangent: second order in the size of the box.
+#
+# A box is a position with all solutions for inputs of an interval around its own, proved to be
+# within bounds (:func:`~linkwork.numerics.proof.position_proof.reach`).
+
+
+def tangent_errors(
+    solver: BlockSolver,
+    linear: Sequence[Linearised],
+    places: Sequence[Expansion],
+    first: Array,
+    span: Array,
+    bound: Array,
+    rounding: Array,
+) -> Array:
+    """How far solutions in boxes around B positions are at most from the tangent, (B, N).
+
+    A solution v + e with |e| ≤ ``bound`` is at most this far from v + s x', where s is the change
+    of the path's parameter, |s| ≤ ``span``.
+
+    Parameters
+    ----------
+    linear, places : sequences
+        The blocks at the positions, with curvature bounds.
+    first : (B, N)
+        x', the rates of all variables.
+    span : (B,)
+    bound : (B, N)
+    rounding : (B, p)
+        How far inputs are from their straight line.
+    """
+    found = np.zeros_like(bound)
+    found[:, solver.unknowns :] = rounding
+    reached = np.abs(first) * span[:, None]
+    with np.errstate(all="ignore"):
+        for block, part, at in zip(solver.blocks, linear, places, strict=True):
+            n, own = len(block.unknowns), block.variables
+            here, known = bound[:, own], own[n:]
+            lost = np.abs(part.inverse) @ np.abs(part.jacobian[:, :, n:])
+            rounded = matrix_vector(lost, reached[:, known]) * (len(own) + 4) * UNIT_ROUNDOFF
+            # eq. (190)
+            found[:, block.unknowns] = PROOF_SLACK * (
+                at.residual
+                + matrix_vector(at.defect, here[:, :n])
+                + matrix_vector(at.slope, found[:, known])
+                + _remainder(at, here)
+                + rounded
+            )
+    return found
+
+
+def _remainder(at: Expansion, bound: Array) -> Array:
+    """What the second derivatives of a block change at most in boxes, (B, n)."""
+    turned = bound @ at.weights
+    found = matrix_vector(at.phase, 0.5 * turned**2)
+    if len(at.pair_length):
+        longer, own = bound[:, at.pair_length], turned[:, at.pair_group]
+        found += matrix_vector(at.slide, longer * own * (1.0 + 0.5 * own))
+    return found

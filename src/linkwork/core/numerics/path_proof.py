@@ -1,0 +1,530 @@
+"""Halving steps of a path until each part is proved, many of them together."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from linkwork.core.foundation.arrays import Array, BoolArray, CountArray, IndexArray
+from linkwork.core.foundation.rounding import UNIT_ROUNDOFF
+from linkwork.core.foundation.statuses import CONVERGED
+from linkwork.core.numerics.block_solver import BlockSolver, Linearised
+from linkwork.core.numerics.branch_tracking import InputPath, quintic
+from linkwork.core.numerics.position_proof import (
+    Place,
+    Proof,
+    expansions,
+    prove,
+    reach,
+    rounding_of_inputs,
+    steps_connected,
+    steps_disproved,
+)
+from linkwork.core.numerics.system import SolvedRows
+
+_HALVINGS = 45  # of one step, at most
+_LANES = 1024  # steps halved together
+_HALFWAY = np.array([0.5])
+_SHORTER = 0.5 ** np.arange(1, 6)  # parts of a step that are tried before it is divided
+
+
+class Allowance:
+    """How many positions may still be solved in between."""
+
+    def __init__(self, left: int) -> None:
+        self.left = left
+
+    def take(self, wanted: int) -> int:
+        """As many as there are, at most ``wanted``."""
+        given = min(wanted, self.left)
+        self.left -= given
+        return given
+
+
+@dataclass(frozen=True)
+class Prover:
+    """The equations of a path; ``exact``: with residuals that are rounded once.
+
+    ``halvings`` of one step before it counts as not proved.
+    """
+
+    solver: BlockSolver
+    path: InputPath
+    exact: bool
+    halvings: int = _HALVINGS
+
+    def expansions(self, v: Array, linear: Sequence[Linearised] | None = None) -> list[Place]:
+        """What proofs need of positions (B, N)."""
+        return expansions(self.solver, v, linear, exact=self.exact)
+
+
+def take_expansions(places: Sequence[Place], index: IndexArray | slice) -> list[Place]:
+    return [None if place is None else place.take(index) for place in places]
+
+
+def prove_steps(
+    solver: BlockSolver,
+    start: SolvedRows,
+    goal: SolvedRows,
+    near: Array,
+    places: Sequence[Place] | None = None,
+) -> tuple[BoolArray, BoolArray]:
+    """Which steps are proved from their start, for all inputs from those of one end to the other's,
+    and which are proved to lead to another branch.
+
+    The inputs are taken from the positions: those of a row may differ from the path's by rounding.
+    """
+    # the factor covers the rounding of the difference
+    input_radius = np.abs(goal.v - start.v)[:, solver.unknowns :] * (1.0 + 8.0 * UNIT_ROUNDOFF)
+    input_radius += start.input_radius + goal.input_radius
+    reached = reach(solver, start.v, input_radius, places)
+    ends = start.v, goal.v, reached, near
+    return steps_connected(*ends), steps_disproved(*ends)
+
+
+def prove_backwards(
+    solver: BlockSolver, steps: OpenSteps, places: Sequence[Place]
+) -> tuple[BoolArray, BoolArray, CountArray]:
+    """Whole steps of a path from their far ends, as :func:`prove_steps`; and into how many parts
+    each has to be divided at least, so that each half of a part is as short as what is proved from
+    both ends, (L,).
+
+    ``places``: of the path's points. All this at once: a proof takes as long for one step as for
+    many.
+    """
+    count, n = len(steps.owner), solver.unknowns
+    lanes, shorter = np.repeat(np.arange(count), len(_SHORTER)), np.tile(_SHORTER, count)
+    whole, h = np.abs(steps.right.v - steps.left.v)[:, n:], steps.right.t - steps.left.t
+    # the factor covers the rounding of the difference
+    far = whole * (1.0 + 8.0 * UNIT_ROUNDOFF) + steps.left.input_radius + steps.right.input_radius
+    few = whole[lanes] * shorter[:, None]
+    points = SolvedRows.concatenate([steps.right, steps.left.take(lanes), steps.right.take(lanes)])
+    at = np.concatenate([steps.owner + 1, steps.owner[lanes], steps.owner[lanes] + 1])
+    reached = reach(solver, points.v, np.concatenate([far, few, few]), take_expansions(places, at))
+    ends = steps.right.v, steps.left.v, reached.take(slice(None, count)), steps.near
+    change = np.concatenate([h[lanes] * shorter, -h[lanes] * shorter])[:, None]
+    rest = slice(count, None)
+    moved = np.abs(change * points.first[rest] + 0.5 * change**2 * points.second[rest])  # eq. (17)
+    inside = moved[:, :n] < reached.isolation_radius[rest]  # eq. (33)
+    held = (reached.holds[rest] & inside.all(axis=1)).reshape(2, count, len(_SHORTER))
+    widest = np.where(held, _SHORTER, 0.0).max(axis=2).min(axis=0)
+    parts = np.where(widest > 0.0, 0.5 / np.maximum(widest, 1e-9), 0.0)
+    return steps_connected(*ends), steps_disproved(*ends), parts.astype(np.int64)
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class OpenSteps:
+    """Steps to be proved (L,): their ends, how far the true positions may be from these (L, N),
+    and the number of the step of the path that they are a part of.
+    """
+
+    left: SolvedRows
+    right: SolvedRows
+    near: Array
+    owner: IndexArray
+
+    def take(self, index: IndexArray | slice) -> OpenSteps:
+        return OpenSteps(
+            left=self.left.take(index),
+            right=self.right.take(index),
+            near=self.near[index],
+            owner=self.owner[index],
+        )
+
+    def with_(self, other: OpenSteps) -> OpenSteps:
+        return OpenSteps(
+            left=SolvedRows.concatenate([self.left, other.left]),
+            right=SolvedRows.concatenate([self.right, other.right]),
+            near=np.concatenate([self.near, other.near]),
+            owner=np.concatenate([self.owner, other.owner]),
+        )
+
+
+@dataclass(frozen=True, kw_only=True)
+class Strand:
+    """Points ``begin`` to ``end``, without that one, of one curve among those of others.
+
+    ``anchor``: the point that the others have to be joined to, if there is one.
+    """
+
+    begin: int
+    end: int
+    anchor: int | None
+
+
+class Halving:
+    """Steps of strands (K,) halved as often as their proof needs.
+
+    ``proved``, ``given_up`` (K,): their outcome. ``pieces`` (K,): how many positions were
+    solved in between.
+    """
+
+    def __init__(self, prover: Prover, strands: Sequence[Strand], holds: BoolArray) -> None:
+        steps = len(holds) - 1
+        self.prover, self.strands = prover, strands
+        self.proved = np.ones(steps, dtype=bool)
+        self.given_up = np.zeros(steps, dtype=bool)
+        self.pieces = np.zeros(steps, dtype=np.int64)
+        # beyond a step that cannot be proved no other is of use
+        self.cut = np.flatnonzero(~(holds[1:] & holds[:-1]))
+        self.width = np.zeros(steps)
+
+    def lose(self, steps: IndexArray) -> None:
+        """Note steps that are not going to be proved."""
+        if len(steps):
+            self.proved[steps] = False
+            self.cut = np.union1d(self.cut, steps)
+
+    def run(self, queue: OpenSteps, allowance: Allowance) -> None:
+        """Prove all steps of a queue as far as the allowance goes."""
+        self.width[queue.owner] = queue.right.t - queue.left.t
+        while True:
+            queue = self.of_use(queue)
+            if not len(queue.owner):
+                return
+            now = allowance.take(min(len(queue.owner), _LANES))
+            if not now:
+                self.proved[queue.owner] = False
+                self.given_up[queue.owner] = True
+                return
+            queue = self._halve(queue.take(slice(None, now))).with_(queue.take(slice(now, None)))
+
+    def divide(self, queue: OpenSteps, parts: CountArray, allowance: Allowance) -> OpenSteps:
+        """Divide steps into parts (L,) at once; return what is not proved of them.
+
+        Every second of the positions in between proves the way to both its neighbours. A step
+        stays as it is where one of them is not found, or not proved.
+        """
+        whole = parts < 1
+        if whole.all():
+            return queue
+        lanes = queue.take(np.flatnonzero(~whole))
+        inside = (2 * parts[~whole] - 1).astype(np.intp)  # indices have 32 bits in a browser
+        wanted = int(inside.sum())
+        if wanted > allowance.left:
+            return queue
+        allowance.take(wanted)
+        lane = np.repeat(np.arange(len(inside)), inside)
+        place = (
+            np.arange(len(lane)) - (np.cumsum(inside) - inside)[lane] + 1
+        )  # 1, 2, … between the ends
+        left, right = lanes.left.take(lane), lanes.right.take(lane)
+        middle, found, places = _between(self.prover, left, right, place / (inside[lane] + 1))
+        proof = prove(self.prover.solver, middle.v, middle.input_radius, places)
+        points = SolvedRows.concatenate([middle, lanes.left, lanes.right])
+        count, behind = len(lane), place == inside[lane]
+        before = np.where(place == 1, count + lane, np.arange(count) - 1)
+        after = np.where(behind, count + len(inside) + lane, np.arange(count) + 1)
+        good = found & proof.holds & (points.t[before] < middle.t) & (middle.t < points.t[after])
+        kept = np.bincount(lane[~good], minlength=len(inside)) == 0
+        np.add.at(self.pieces, lanes.owner, inside)
+        odd = np.flatnonzero(kept[lane] & (place % 2 == 1))
+        error_bound = np.concatenate([proof.error_bound, lanes.near, lanes.near])
+        both, to = np.tile(odd, 2), np.concatenate([before[odd], after[odd]])
+        near = np.maximum(error_bound[both], error_bound[to])
+        start, goal = points.take(both), points.take(to)
+        held, apart = prove_steps(
+            self.prover.solver, start, goal, near, take_expansions(places, both)
+        )
+        self.lose(lanes.owner[lane[both[apart]]])
+        open_ = np.flatnonzero(~held)
+        down = np.arange(len(both)) < len(odd)
+        low, high = np.where(down, to, both)[open_], np.where(down, both, to)[open_]
+        rest = OpenSteps(
+            left=points.take(low),
+            right=points.take(high),
+            near=near[open_],
+            owner=lanes.owner[lane[both[open_]]],
+        )
+        undivided = np.concatenate([np.flatnonzero(whole), np.flatnonzero(~whole)[~kept]])
+        return queue.take(undivided).with_(rest)
+
+    def of_use(self, queue: OpenSteps) -> OpenSteps:
+        """The steps that may still be proved, nearest to their anchors first."""
+        owner = queue.owner
+        hopeful = self.proved[owner]
+        away = np.zeros(len(owner))
+        for strand in self.strands:
+            if strand.anchor is None:
+                continue
+            here = (owner >= strand.begin) & (owner < strand.end - 1)
+            cut = self.cut[(self.cut >= strand.begin) & (self.cut < strand.end - 1)]
+            lowest = cut[cut < strand.anchor].max(initial=-1)
+            highest = cut[cut >= strand.anchor].min(initial=len(self.proved))
+            moot = here & ((owner < lowest) | (owner > highest))
+            self.proved[owner[moot]] = False
+            hopeful &= ~moot
+            away[here] = np.abs(owner[here] + 0.5 - strand.anchor)
+        keep = np.flatnonzero(hopeful)
+        return queue.take(keep[np.argsort(away[keep], kind="stable")])
+
+    def _halve(self, lanes: OpenSteps) -> OpenSteps:
+        """Halve some steps once more; return the halves that are not proved."""
+        solver = self.prover.solver
+        np.add.at(self.pieces, lanes.owner, 1)
+        middle, found, places = _between(self.prover, lanes.left, lanes.right, _HALFWAY)
+        proof = prove(solver, middle.v, middle.input_radius, places)
+        good = found & proof.holds
+        # no number is left between the ends
+        good &= (lanes.left.t < middle.t) & (middle.t < lanes.right.t)
+        # a step that has shrunk to nothing is not going to be proved
+        good &= (lanes.right.t - lanes.left.t) > self.width[
+            lanes.owner
+        ] * 2.0**-self.prover.halvings
+        self.lose(np.flatnonzero(np.bincount(lanes.owner[~good])))
+        keep = np.flatnonzero(self.proved[lanes.owner])
+        if not len(keep):
+            return lanes.take(keep)
+        lanes, middle, places = lanes.take(keep), middle.take(keep), take_expansions(places, keep)
+        near = np.maximum(lanes.near, proof.error_bound[keep])
+        # both halves from the middle, where everything is computed
+        both = np.tile(np.arange(len(keep)), 2)
+        halves = OpenSteps(
+            left=SolvedRows.concatenate([lanes.left, middle]),
+            right=SolvedRows.concatenate([middle, lanes.right]),
+            near=near[both],
+            owner=lanes.owner[both],
+        )
+        ends = SolvedRows.concatenate([lanes.left, lanes.right])
+        held, apart = prove_steps(
+            solver, middle.take(both), ends, halves.near, take_expansions(places, both)
+        )
+        self.lose(halves.owner[apart])
+        return halves.take(np.flatnonzero(~held))
+
+
+def _between(
+    prover: Prover, left: SolvedRows, right: SolvedRows, share: Array
+) -> tuple[SolvedRows, BoolArray, list[Place]]:
+    """Positions at shares (L,) of steps in t, started from the quintic through both ends; which
+    were found; their expansions for proofs.
+    """
+    solver, path = prover.solver, prover.path
+    guess = quintic(share[:, None], (right.t - left.t)[:, None], left, right)
+    t = left.t + share * (right.t - left.t)
+    guess[:, solver.unknowns :] = path.at(t)
+    done = solver.solve(guess)
+    v = solver.sharpen(done.v) if prover.exact else done.v
+    linear = None if solver.is_proved_singly(len(v)) else solver.linearise(v)
+    rates = solver.rates(v, path.rate, linear)
+    input_radius = rounding_of_inputs(v, solver.unknowns)
+    points = SolvedRows(t=t, v=v, first=rates.first, second=rates.second, input_radius=input_radius)
+    return points, done.status == CONVERGED, prover.expansions(v, linear)
+
+
+# ----------------------------------------------------------------------
+# Proving that a row of positions lies on one branch: many steps at once, halved where needed.
+
+
+_MOST = 30_000  # positions solved in between for the proof of one path
+_MOST_EACH = 8  # and this many more for each of its own positions
+_PIECE = 1024  # positions proved together: arrays that fit the cache
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class ProvenPath:
+    """``position``: the proofs of K positions. ``connected`` (K-1,): which steps are proved.
+    ``pieces`` (K-1,): into how many steps each was divided for that. ``given_up`` (K-1,): which
+    are not proved because that would have taken too many.
+    """
+
+    position: Proof
+    connected: BoolArray
+    pieces: CountArray
+    given_up: BoolArray
+
+    def connected_to(self, anchor: int) -> BoolArray:
+        """The positions joined to one of them by proved steps and proved themselves, (K,)."""
+        return _connected_outwards(self.connected, anchor) & self.position.holds
+
+    def given_up_before(self, anchor: int) -> BoolArray:
+        """The positions whose first step without a proof, on the way from one, was given up."""
+        joined = _connected_outwards(self.connected, anchor)
+        as_if = _connected_outwards(self.connected | self.given_up, anchor)
+        first_broken = as_if & ~joined
+        # beyond a step that was given up others may be broken for other reasons
+        right = np.logical_or.accumulate(first_broken[anchor:])
+        left = np.logical_or.accumulate(first_broken[: anchor + 1][::-1])[::-1]
+        return np.concatenate([left[:-1], right])
+
+
+def _connected_outwards(connected: BoolArray, anchor: int) -> BoolArray:
+    """Which of K positions are joined to one of them, (K,)."""
+    right = np.logical_and.accumulate(connected[anchor:])
+    left = np.logical_and.accumulate(connected[:anchor][::-1])[::-1]
+    return np.concatenate([left, [True], right])
+
+
+def prove_path(
+    solver: BlockSolver,
+    path: InputPath,
+    points: SolvedRows,
+    *,
+    anchor: int | None = None,
+    most: int | None = None,
+    exact: bool = False,
+    progress: Callable[[float], None] | None = None,
+) -> ProvenPath:
+    """Prove every position and every step between neighbours.
+
+    Parameters
+    ----------
+    points : SolvedRows
+        In the order of t, with ``first``, ``second`` and ``input_radius``.
+    anchor : int, optional
+        The point that the others have to be joined to: steps near it are proved first, and those
+        beyond one that cannot be proved are left alone. Without it all steps count alike.
+    most : int, optional
+        How many positions in between may be solved for the proof of the whole path; by default a
+        number that grows with the path's own.
+    exact : bool
+        Take residuals that are rounded once: slower, for places where branches nearly cross.
+    progress : callable, optional
+        Called with the finished fraction.
+
+    Notes
+    -----
+    A step that is not proved from its left end is tried from its right end, then halved at a
+    position solved in between. Many open steps are worked on together.
+    """
+    count = len(points.t)
+    prover = Prover(solver, path, exact)
+    allowance = Allowance(_MOST + _MOST_EACH * count if most is None else most)
+    begins = list(range(0, max(count - 1, 1), _PIECE))
+    if anchor is not None:
+        # near the anchor first: beyond a step that is not proved no other one is of use
+        begins.sort(key=lambda begin: abs(begin + _PIECE // 2 - anchor))
+    found: dict[int, ProvenPath] = {}
+    for k, begin in enumerate(begins, start=1):
+        part = points.take(slice(begin, begin + _PIECE + 1))
+        inside = None if anchor is None else min(max(anchor - begin, 0), len(part.t) - 1)
+        strand = Strand(begin=0, end=len(part.t), anchor=inside)
+        found[begin] = _piece(prover, part, [strand], allowance)
+        if progress is not None:
+            progress(k / len(begins))
+    pieces = [found[begin] for begin in sorted(begins)]
+    if len(pieces) == 1:
+        return pieces[0]
+    # neighbouring pieces share one position
+    proofs = [pieces[0].position, *[_part(piece.position, slice(1, None)) for piece in pieces[1:]]]
+    return ProvenPath(
+        position=Proof(
+            holds=np.concatenate([p.holds for p in proofs]),
+            existence_radius=np.concatenate([p.existence_radius for p in proofs]),
+            uniqueness_radius=np.concatenate([p.uniqueness_radius for p in proofs]),
+            error_bound=np.concatenate([p.error_bound for p in proofs]),
+        ),
+        connected=np.concatenate([piece.connected for piece in pieces]),
+        pieces=np.concatenate([piece.pieces for piece in pieces]),
+        given_up=np.concatenate([piece.given_up for piece in pieces]),
+    )
+
+
+def prove_paths(
+    solver: BlockSolver,
+    path: InputPath,
+    paths: Sequence[SolvedRows],
+    *,
+    anchors: Sequence[int],
+    most: int,
+    halvings: int | None = None,
+) -> list[ProvenPath]:
+    """:func:`prove_path` of several paths together, each with an anchor of its own.
+
+    ``halvings`` of one step, at most; the usual number by default.
+    """
+    prover, allowance = Prover(solver, path, False), Allowance(most)
+    prover = prover if halvings is None else replace(prover, halvings=halvings)
+    found: list[ProvenPath] = []
+    for some in _groups([len(points.t) for points in paths]):
+        strands, begin = [], 0
+        for k in some:
+            end = begin + len(paths[k].t)
+            strands.append(Strand(begin=begin, end=end, anchor=begin + anchors[k]))
+            begin = end
+        points = SolvedRows.concatenate([paths[k] for k in some])
+        whole = _piece(prover, points, strands, allowance)
+        for strand in strands:
+            steps = slice(strand.begin, strand.end - 1)
+            found.append(
+                ProvenPath(
+                    position=_part(whole.position, slice(strand.begin, strand.end)),
+                    connected=whole.connected[steps],
+                    pieces=whole.pieces[steps],
+                    given_up=whole.given_up[steps],
+                )
+            )
+    return found
+
+
+def _groups(sizes: Sequence[int]) -> list[list[int]]:
+    """Consecutive numbers in groups whose sizes fit the cache."""
+    found: list[list[int]] = []
+    room = 0
+    for k, size in enumerate(sizes):
+        if size > room:
+            found.append([])
+            room = _PIECE
+        found[-1].append(k)
+        room -= size
+    return found
+
+
+def _part(p: Proof, rows: slice) -> Proof:
+    return Proof(
+        holds=p.holds[rows],
+        existence_radius=p.existence_radius[rows],
+        uniqueness_radius=p.uniqueness_radius[rows],
+        error_bound=p.error_bound[rows],
+    )
+
+
+def _piece(
+    prover: Prover,
+    points: SolvedRows,
+    strands: Sequence[Strand],
+    allowance: Allowance,
+) -> ProvenPath:
+    """Strands one after the other; what lies between two of them is no step."""
+    solver, places = prover.solver, prover.expansions(points.v)
+    position = prove(solver, points.v, points.input_radius, places)
+    steps = len(points.t) - 1
+    nothing = np.zeros(steps, dtype=bool)
+    pieces = np.ones(steps, dtype=np.int64)
+    if not steps:
+        return ProvenPath(position=position, connected=nothing, pieces=pieces, given_up=nothing)
+    own = np.ones(steps, dtype=bool)
+    own[[strand.begin - 1 for strand in strands[1:]]] = False
+    left, right = points.take(slice(None, -1)), points.take(slice(1, None))
+    near = np.maximum(position.error_bound[1:], position.error_bound[:-1])
+    connected, apart = prove_steps(
+        solver, left, right, near, take_expansions(places, slice(None, -1))
+    )
+    hold = position.holds[1:] & position.holds[:-1] & own
+    connected &= hold
+    open_ = np.flatnonzero(~connected & hold)
+    parts = np.ones(0, dtype=np.int64)
+    if len(open_):
+        # a step towards a change point is often proved from its far end only
+        whole = _open_steps(left, right, near, open_)
+        connected[open_], disproved, parts = prove_backwards(solver, whole, places)
+        apart[open_] |= disproved
+        left_over = ~connected[open_]
+        open_, parts = open_[left_over], parts[left_over]
+    if not len(open_):
+        return ProvenPath(position=position, connected=connected, pieces=pieces, given_up=nothing)
+    work = Halving(prover, strands, position.holds)
+    work.lose(np.flatnonzero(apart & own))
+    queue = work.of_use(_open_steps(left, right, near, open_))
+    parts = parts[np.searchsorted(open_, queue.owner)]
+    work.run(work.divide(queue, parts, allowance), allowance)
+    connected[open_] = work.proved[open_]
+    return ProvenPath(
+        position=position, connected=connected, pieces=pieces + work.pieces, given_up=work.given_up
+    )
+
+
+def _open_steps(left: SolvedRows, right: SolvedRows, near: Array, steps: IndexArray) -> OpenSteps:
+    return OpenSteps(left=left.take(steps), right=right.take(steps), near=near[steps], owner=steps)

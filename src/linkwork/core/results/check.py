@@ -1,0 +1,376 @@
+"""The classification of a mechanism: chain, inversion, type by lengths, Assur groups."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+from linkwork.core.foundation.statuses import Status
+from linkwork.core.results.failure import Failure
+
+_ROMAN = ("", "I", "II", "III", "IV", "V", "VI", "VII", "VIII", "IX", "X")
+
+
+def roman(number: int) -> str:
+    """A class as a Roman numeral: ``II``."""
+    return _ROMAN[number] if number < len(_ROMAN) else str(number)
+
+
+@dataclass(frozen=True, kw_only=True)
+class LoopType:
+    """The type of a four-bar or slider-crank loop, from its exact lengths.
+
+    Parameters
+    ----------
+    links : tuple of str
+        Around the loop: ground, driven link (or the first one), coupler, output.
+    name : str
+        ``crank-rocker``, ``crank shaper``, …
+    barker : str
+        Barker's code of a four-bar (``GCRR``); "" for other loops.
+    grashof : bool or None
+        Whether a link turns fully; ``None`` at a change point.
+    margin : float
+        p + q - s - l of a four-bar, l - s - e of a slider-crank [length]; positive if a link turns
+        fully. s is the shortest link, l the longest, p and q are the others, e is the offset.
+    relative_margin : float
+        The margin divided by the longest of these lengths.
+    turns_fully : bool or None
+        Whether the driven joint turns fully; ``None`` at a change point, or if no pin of this loop
+        is driven.
+    condition : str
+        The comparison of the lengths as a sentence.
+
+    References
+    ----------
+    C. R. Barker: A complete classification of planar four-bar linkages. Mechanism and Machine
+    Theory 20 (1985) 535-554
+
+    Examples
+    --------
+    >>> import linkwork as lw
+    >>> loop = lw.example("four-bar").check().classification.loop
+    >>> loop.barker, loop.margin, loop.turns_fully
+    ('GCRR', 20.0, True)
+    """
+
+    links: tuple[str, ...]
+    name: str
+    barker: str = ""
+    grashof: bool | None
+    margin: float
+    relative_margin: float
+    turns_fully: bool | None
+    condition: str
+
+    @property
+    def text(self) -> str:
+        """``crank-rocker (GCRR): Grashof, s + l < p + q by 40 mm``."""
+        code = f" ({self.barker})" if self.barker else ""
+        return f"{self.name}{code}: {self.condition}"
+
+    def to_dict(self) -> dict[str, Any]:
+        """The type as JSON-ready data."""
+        return {
+            "links": list(self.links),
+            "name": self.name,
+            "barker": self.barker or None,
+            "grashof": self.grashof,
+            "margin": self.margin,
+            "relative_margin": self.relative_margin,
+            "turns_fully": self.turns_fully,
+        }
+
+
+@dataclass(frozen=True, kw_only=True)
+class AssurGroup:
+    """A group of links that are determined together once all links before them are known.
+
+    Parameters
+    ----------
+    links : tuple of str
+        The links of the group; links that the input holds together count as one:
+        ``crank + coupler``.
+    name : str
+        ``dyad RRR``, ``triad RR-RR-RP``, ``tetrad``, ``group of 6 links``; or why the links are not
+        an Assur group.
+    class_number, order : int or None
+        Class and order after Artobolevskii; ``None`` if the links are not an Assur group.
+
+    Examples
+    --------
+    >>> import linkwork as lw
+    >>> report = lw.example("four-bar").check()
+    >>> report.classification.groups[0].text
+    'dyad RRR, class II'
+    """
+
+    links: tuple[str, ...]
+    name: str
+    class_number: int | None
+    order: int | None
+
+    @property
+    def text(self) -> str:
+        """``dyad RRR, class II``."""
+        if self.class_number is None:
+            return self.name
+        return f"{self.name}, class {roman(self.class_number)}"
+
+    def to_dict(self) -> dict[str, Any]:
+        """The group as JSON-ready data."""
+        return {
+            "links": list(self.links),
+            "name": self.name,
+            "class": self.class_number,
+            "order": self.order,
+        }
+
+
+@dataclass(frozen=True, kw_only=True)
+class Classification:
+    """The kinematic chain, the type and the Assur groups of a mechanism.
+
+    Parameters
+    ----------
+    chain : str
+        The kinematic chain: ``four-bar chain``, ``Watt chain``, …
+    inversion : str or None
+        The name of the inversion, which depends on the ground: ``Stephenson III``, ``Scotch yoke``,
+        …
+    links : int
+        The number of links of the chain.
+    blocks : tuple of str
+        Slots whose pins count as links (blocks).
+    loop : LoopType or None
+        The type of the four-bar or slider-crank loop that contains the driven link.
+    groups : tuple of AssurGroup
+        In the order in which they are solved.
+    class_number : int or None
+        The highest class of a group, 1 without groups; ``None`` if the mechanism has no class.
+
+    Examples
+    --------
+    >>> import linkwork as lw
+    >>> found = lw.example("four-bar").check().classification
+    >>> found.chain, found.loop.name, found.class_number
+    ('four-bar chain', 'crank-rocker', 2)
+    """
+
+    chain: str
+    inversion: str | None
+    links: int
+    blocks: tuple[str, ...]
+    loop: LoopType | None
+    groups: tuple[AssurGroup, ...]
+    class_number: int | None
+
+    @property
+    def type(self) -> str:
+        """The type by ground and lengths, empty if there is no name for it."""
+        if self.loop is not None and self.links == len(self.loop.links):
+            return self.loop.text
+        told = [self.inversion] if self.inversion is not None else []
+        if self.loop is not None:
+            told.append(f"its loop {', '.join(self.loop.links)}: {self.loop.text}")
+        return "; ".join(told)
+
+    def to_dict(self) -> dict[str, Any]:
+        """The classification as JSON-ready data."""
+        return {
+            "chain": self.chain,
+            "links": self.links,
+            "inversion": self.inversion,
+            "type": self.type or None,
+            "blocks": list(self.blocks),
+            "loop": None if self.loop is None else self.loop.to_dict(),
+            "groups": [group.to_dict() for group in self.groups],
+            "class": self.class_number,
+        }
+
+
+@dataclass(frozen=True, kw_only=True)
+class Inversion:
+    """An inversion of a kinematic chain: the chain with another link as ground.
+
+    Parameters
+    ----------
+    ground : str
+        The fixed link of this inversion.
+    type : str
+        The type of the mechanism; "" if it has no name.
+    like : str
+        The first link that, as ground, gives the same chain up to its lengths.
+    problem : str
+        Why ``mechanism.inversion`` cannot make it; "" if it can.
+
+    Examples
+    --------
+    >>> import linkwork as lw
+    >>> for inversion in lw.example("four-bar").inversions():
+    ...     print(inversion.ground, "->", inversion.type.partition(":")[0])
+    ground -> crank-rocker (GCRR)
+    crank -> double-crank (GCCC)
+    coupler -> crank-rocker
+    rocker -> double-rocker
+    """
+
+    ground: str
+    type: str
+    like: str
+    problem: str = ""
+
+    @property
+    def text(self) -> str:
+        """``coupler: double-rocker (GRCR): …``."""
+        return f"{self.ground}: {self.type or self.problem or 'unnamed'}"
+
+
+# ----------------------------------------------------------------------
+# The report of a check: how a mechanism was read, before a cycle is solved.
+
+
+@dataclass(frozen=True, kw_only=True)
+class BlockSummary:
+    """A block: the labels of equations that are solved together, and their unknowns.
+
+    ``group``: the Assur group of the block.
+
+    Examples
+    --------
+    >>> import linkwork as lw
+    >>> [block.unknowns for block in lw.example("double-four-bar").check().blocks]
+    [('θ2', 'θ3'), ('θ4', 'θ5')]
+    """
+
+    equations: tuple[str, ...]
+    unknowns: tuple[str, ...]
+    group: AssurGroup | None = None
+
+    def to_dict(self) -> dict[str, Any]:
+        """The block as JSON-ready data."""
+        return {
+            "equations": list(self.equations),
+            "unknowns": list(self.unknowns),
+            "group": None if self.group is None else self.group.to_dict(),
+        }
+
+
+@dataclass(frozen=True, kw_only=True)
+class CheckReport:
+    """How a mechanism was read: its equations, mobility, classification and start position.
+
+    Parameters
+    ----------
+    mechanism : str
+        The name of the mechanism.
+    form : str
+        ``points and links``, ``loops`` or ``equations``.
+    links, joints : int
+        Their numbers; for loops they are read from the equations, and 0 if that fails.
+    loops : tuple of str
+        Labels of the loop equations, or of plain equations.
+    unknowns, inputs : tuple of (name, unit)
+        The variables with their units.
+    rows : int
+        Number of rows of the input's table.
+    blocks : tuple of BlockSummary
+        Equations that are solved together, in solving order.
+    mobility_count : int or None
+        Mobility by Grübler's count; ``None`` without links and joints.
+    mobility_rank : int or None
+        Variables minus the rank of the full Jacobian at the start position; ``None`` without one.
+    measured : tuple of (link, "A B", length)
+        Dimensions that are not given and follow from the sketched points [file's length unit].
+    measured_in_parts : tuple of (part, quantity, value, unit)
+        Numbers of parts that are not given and follow from the sketch, such as a phase of gears.
+    start : Status
+        How Newton-Raphson ended at the input value of the guess.
+    start_message : str
+        The same as a sentence.
+    start_input : dict[str, float]
+        The input values of the guess, in file units.
+    residual : float
+        Largest closure error at the start, relative to the longest link.
+    failure : Failure, optional
+        Why there is no position at the start.
+    mobility_why : str
+        Why the two mobilities differ; "" if they do not.
+    redundant : tuple of (link, length, gap)
+        Links whose length follows from the others: the given length, and its error at the start
+        relative to the longest link.
+    classification : Classification, optional
+        Chain, type and Assur groups.
+    unclassified : str
+        Why there is no classification; "" if there is one.
+
+    Examples
+    --------
+    >>> import linkwork as lw
+    >>> report = lw.example("four-bar").check()
+    >>> report.mobility_count, report.mobility_rank
+    (1, 1)
+    >>> report.classification.type
+    'crank-rocker (GCRR): Grashof, s + l < p + q by 20 mm'
+    """
+
+    mechanism: str
+    form: str
+    links: int
+    joints: int
+    loops: tuple[str, ...]
+    unknowns: tuple[tuple[str, str], ...]
+    inputs: tuple[tuple[str, str], ...]
+    rows: int
+    blocks: tuple[BlockSummary, ...]
+    mobility_count: int | None
+    mobility_rank: int | None
+    measured: tuple[tuple[str, str, float], ...]
+    start: Status
+    start_message: str
+    start_input: dict[str, float]
+    residual: float
+    failure: Failure | None = None
+    mobility_why: str = ""
+    redundant: tuple[tuple[str, float, float], ...] = ()
+    classification: Classification | None = None
+    unclassified: str = ""
+    measured_in_parts: tuple[tuple[str, str, float, str], ...] = ()
+
+    def to_dict(self) -> dict[str, Any]:
+        """The report as JSON-ready data."""
+        return {
+            "mechanism": self.mechanism,
+            "form": self.form,
+            "links": self.links,
+            "joints": self.joints,
+            "loops": list(self.loops),
+            "unknowns": [{"name": n, "unit": u} for n, u in self.unknowns],
+            "inputs": [{"name": n, "unit": u} for n, u in self.inputs],
+            "rows": self.rows,
+            "blocks": [block.to_dict() for block in self.blocks],
+            "classification": None
+            if self.classification is None
+            else self.classification.to_dict(),
+            **({"unclassified": self.unclassified} if self.unclassified else {}),
+            "mobility": {
+                "count": self.mobility_count,
+                "rank": self.mobility_rank,
+                **({"why": self.mobility_why} if self.mobility_why else {}),
+            },
+            "redundant": [
+                {"link": link, "length": length, "gap": gap} for link, length, gap in self.redundant
+            ],
+            "measured": [{"link": k, "points": p, "length": v} for k, p, v in self.measured],
+            "measured_in_parts": [
+                {"part": part, "quantity": quantity, "value": value, "unit": unit}
+                for part, quantity, value, unit in self.measured_in_parts
+            ],
+            "start": {
+                "status": self.start.name,
+                "message": self.start_message,
+                "input": self.start_input,
+                "residual": self.residual,
+            },
+            **({} if self.failure is None else {"failure": self.failure.to_dict()}),
+        }

@@ -1,0 +1,284 @@
+"""All tables and keys of a mechanism file, defined in one place.
+
+The reader's checks (:mod:`~linkwork.core.textfile.structure`) and the published JSON Schema
+(:mod:`~linkwork.core.textfile.schema`) are both generated from :data:`FORMS`.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import dataclass
+
+from linkwork.core.foundation.units import FORCES, MASSES
+from linkwork.core.foundation.values import (
+    Constant,
+    Flag,
+    Formula,
+    Key,
+    ListOf,
+    Named,
+    NumberValue,
+    PlainNumber,
+    Speed,
+    Table,
+    Tables,
+    TablesOrFormula,
+    Text,
+)
+from linkwork.core.mechanism.description import HIDDEN
+from linkwork.core.mechanism.inputs import LAW_KEYS, MOTOR_KEYS
+from linkwork.core.mechanism.machine import FRICTION_KEYS, GRAVITY_KEYS, MASS_KEYS, STOP_KEYS
+from linkwork.core.mechanism.part.index import PARTS
+from linkwork.core.mechanism.part.springs import Load
+from linkwork.core.mechanism.varied_numbers import CLEARANCES, TOLERANCES
+
+__all__ = ["EQUATIONS", "FORMAT", "FORMS", "LINKAGE", "LOOPS", "Form", "form_of"]
+
+#: The version of the file format that this package reads and writes.
+FORMAT = 1
+
+
+@dataclass(frozen=True)
+class Form:
+    """A kind of file: its keys, and the table ``marker`` that identifies it, if any."""
+
+    title: str
+    doc: str
+    marker: str
+    keys: tuple[Key, ...]
+
+    @property
+    def definition(self) -> str:
+        """Its name in the definitions of the JSON Schema."""
+        return self.title.replace("-", "_").replace(" ", "_")
+
+
+_POINT_LIST = ListOf(Text(), "point")
+
+_HEAD = (
+    Key(
+        "format",
+        Constant(FORMAT),
+        "The version of this file format; write format = 1",
+        required=True,
+    ),
+    Key("name", Text(), "Name of the mechanism"),
+    Key("length", Text(), "Unit of every length in this file; nothing is converted"),
+    Key("angle", Text(("deg", "rad")), "Unit of every angle in this file"),
+    Key("source", Text(), "Where the mechanism comes from: book, page, drawing"),
+    Key("family", Text(), 'The family in lists of mechanisms: "straight line", "engine"'),
+    Key(
+        "configuration",
+        Text(),
+        'The configuration or branch to start from instead of the guess: "crossed", '
+        '"circuit 1 branch 2"',
+    ),
+    Key("purpose", Text(), "What the mechanism is for, in one sentence"),
+)
+_DIMENSIONS = Key(
+    "dimensions",
+    Named(NumberValue("named")),
+    "Named numbers and formulas, usable in place of numbers",
+)
+_OUTPUTS = Key(
+    "outputs",
+    Named(Formula()),
+    "Named formulas of unknowns, dimensions and point coordinates (A.x)",
+)
+_TRACE = Key(
+    "trace",
+    Table((Key("points", _POINT_LIST, "Points whose paths are drawn", required=True),)),
+    "Traces in pictures",
+)
+_FORCE_UNITS = (
+    Key("mass", Text(tuple(MASSES)), "Unit of every mass in this file; default kg"),
+    Key("force", Text(tuple(FORCES)), "Unit of every force in this file; default N"),
+)
+_MASSES = (
+    Key("gravity", Table(GRAVITY_KEYS), "Gravity: size and direction; none unless given"),
+    Key("masses", Named(Table(MASS_KEYS)), "Masses of links: crank = { mass = 1.2, … }"),
+    Key("stops", Tables(STOP_KEYS), "Bounds of quantities in simulations"),
+)
+_FRICTION = Key(
+    "friction",
+    Named(Table(FRICTION_KEYS)),
+    "Friction of pins and parts: A = { mu = 0.1, radius = 5 }",
+)
+_QUESTIONS = Key(
+    "questions",
+    Tables(
+        (
+            Key("text", Text(), "The question", required=True),
+            Key(
+                "answer",
+                NumberValue(),
+                '"dead points", "change points", a number of the whole motion such as '
+                '"stroke(rocker)", with at a quantity such as "mu", or the number itself',
+                required=True,
+            ),
+            Key("at", PlainNumber(), "The input value at which the quantity is asked"),
+            Key(
+                "tolerance",
+                PlainNumber(),
+                "How far an answer may be from the right one, in its unit",
+                required=True,
+            ),
+            Key("unit", Text(), "The unit of an answer that is given as a number"),
+            Key(
+                "hide",
+                ListOf(Text(HIDDEN), "word"),
+                "What a page hides until the question is answered; default all but equations",
+            ),
+        )
+    ),
+    "Questions asked on pages; answers are computed, and hidden until they are asked for",
+)
+_GUESS = Key(
+    "guess",
+    Named(NumberValue("named")),
+    "Estimates of all unknowns at one input value",
+    required=True,
+)
+_RANGE = (
+    Key("from", NumberValue("ranged"), "First input value; with a law the first time [s]"),
+    Key("to", NumberValue("ranged"), "Last input value; with a law the last time [s]"),
+    Key(
+        "step",
+        NumberValue("ranged"),
+        "Step between input values, or times; its sign points from the first to the last",
+    ),
+    Key(
+        "speed",
+        Speed(),
+        'Speed of the input, "300 rpm"; a plain number is in file units per second',
+    ),
+    Key(
+        "law",
+        TablesOrFormula(LAW_KEYS),
+        "How the input moves in time: segments from t = 0, or a formula of t",
+    ),
+    Key(
+        "begin", NumberValue("driven"), "With segments: input value at t = 0; default: the sketch's"
+    ),
+    Key("motor", Table(MOTOR_KEYS), "What drives the input in simulations"),
+    Key("inertia", NumberValue("area"), "Flywheel on the input in simulations"),
+)
+_DRIVES = (
+    Key("link", Text(of="link"), "The link whose angle is driven"),
+    Key(
+        "relative_to",
+        Text(of="link"),
+        "The link relative to which the angle is measured; default ground",
+    ),
+    Key("joint", Text(of="point"), "The pin whose relative angle is driven"),
+    Key("slider", Text(of="slider"), "The slider or slot whose displacement is driven"),
+    Key("cylinder", Text(of="slider"), "The cylinder whose length is driven"),
+    *_RANGE,
+)
+_VARIABLE = (
+    Key("variable", Text(), "The driven variable of the equations", required=True),
+    *_RANGE,
+)
+LINKAGE = Form(
+    "points-and-links",
+    "A mechanism given by points and links",
+    "",
+    (
+        *_HEAD,
+        *_FORCE_UNITS,
+        Key("sketch", Flag(), "If true, dimensions are never measured from [points]"),
+        _DIMENSIONS,
+        Key(
+            "points",
+            Named(ListOf(NumberValue("length"), "coordinate", 2, 2)),
+            "One assembled position: A = [35, 20]; exact on ground, elsewhere a sketch is enough",
+            required=True,
+        ),
+        Key(
+            "links",
+            Named(ListOf(Text(), "point", 1)),
+            'The points each link carries: crank = ["O2", "A"]; "ground" is fixed',
+            required=True,
+        ),
+        Key("lengths", Named(NumberValue("length"), 2), 'Exact distances in one link: "O2 A" = 40'),
+        Key(
+            "angles",
+            Named(NumberValue("angle"), 3),
+            'Exact angles in one link: "B A P" = 30, at A from AB to AP, counter-clockwise',
+        ),
+        *(Key(name, Tables(kind.keys), kind.doc) for name, kind in PARTS.items()),
+        *_MASSES,
+        _FRICTION,
+        Key("input", Tables(_DRIVES, single=True), "The driven quantity and its range"),
+        TOLERANCES,
+        CLEARANCES,
+        _TRACE,
+        _OUTPUTS,
+        _QUESTIONS,
+    ),
+)
+LOOPS = Form(
+    "loops",
+    "A mechanism given by vector loop-closure equations",
+    "loops",
+    (
+        *_HEAD,
+        *_FORCE_UNITS,
+        _DIMENSIONS,
+        Key(
+            "loops",
+            Named(Formula(equation=True), 0),
+            'Loop equations by label: "A B C" = "a2*e^(i*theta2) + a3*e^(i*theta3) = d"',
+            required=True,
+        ),
+        _GUESS,
+        Key(
+            "input",
+            Tables(_VARIABLE, single=True),
+            'The driven variable: variable = "theta2"; without it the loops describe a structure',
+        ),
+        Key(
+            "points",
+            Named(Formula()),
+            'Points as formulas, A = "a2*e^(i*theta2)", for drawings',
+        ),
+        Key(
+            "links",
+            Named(ListOf(Text(), "point", 1)),
+            'Points drawn as one link: crank = ["A0", "A"]; "ground" is fixed',
+        ),
+        *_MASSES,
+        Key("loads", Tables(Load.keys), Load.doc),
+        TOLERANCES,
+        _TRACE,
+        _OUTPUTS,
+        _QUESTIONS,
+    ),
+)
+EQUATIONS = Form(
+    "plain-equations",
+    "Any small system of real equations, solved by Newton-Raphson",
+    "equations",
+    (
+        *_HEAD,
+        _DIMENSIONS,
+        Key(
+            "equations",
+            Named(Formula(equation=True), 0),
+            'Real equations by label: f = "x^3 - 2*x + 2 = 0"',
+            required=True,
+        ),
+        _GUESS,
+        Key("input", Tables(_VARIABLE, single=True), 'The driven variable: variable = "x"'),
+        TOLERANCES,
+        _OUTPUTS,
+        _QUESTIONS,
+    ),
+)
+FORMS = (LINKAGE, LOOPS, EQUATIONS)
+
+
+def form_of(tables: Iterable[str]) -> Form:
+    """The form of a file with these top-level keys."""
+    present = set(tables)
+    return next((form for form in FORMS if form.marker in present), LINKAGE)

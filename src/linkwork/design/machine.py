@@ -1,0 +1,372 @@
+"""Machine design."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+
+from linkwork.core.foundation.arrays import Array
+from linkwork.core.foundation.errors import InputError, UnknownNameError, choices, key_text
+from linkwork.core.foundation.names import GROUND, find_spelling
+from linkwork.core.foundation.units import FULL_TURN, force_of_inertia
+from linkwork.core.mechanism.dimensions import Number
+from linkwork.core.mechanism.inputs import Motor, speed_per_second
+from linkwork.core.mechanism.loaded import LoadedBodies
+from linkwork.core.motion.model import Model
+from linkwork.core.motion.rows_between import between_rows
+from linkwork.core.results.motion import Motion
+from linkwork.core.results.position import Position
+from linkwork.core.results.quantities.definition import Group, Solved
+from linkwork.core.results.quantity import Kind
+from linkwork.design.results import Flywheel, Harmonics, InflectionCircle, MotorCheck
+from linkwork.forces.dynamics.piecewise import Piecewise, piecewise
+from linkwork.forces.reactions.drives import effort_kind, effort_name
+from linkwork.forces.reactions.geometry import Geometry
+
+# ----------------------------------------------------------------------
+# One turn of the input, or the whole time of a law, for means, integrals and Fourier sums.
+
+
+_EVEN = 1e-9  # of a turn: rounding of the table
+_EQUAL = 1e-12  # of the size: extremes that differ less are equal
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Cycle:
+    """A quantity over a cycle: in the M + 1 rows of the table, and between them.
+
+    Parameters
+    ----------
+    place : (M + 1,)
+        The input, or the time of a law [rad], [length] or [s].
+    value : (M + 1,)
+        The quantity [file unit].
+    curve : Piecewise
+        The quantity between the rows, jumps and corners included.
+    """
+
+    place: Array
+    value: Array
+    curve: Piecewise
+
+
+def column_of(model: Model, what: str) -> str:
+    """The only input of a mechanism; ``what`` needs it.
+
+    Raises
+    ------
+    InputError
+        For several inputs, or none.
+    """
+    inputs = model.description.inputs
+    if len(inputs) != 1:
+        raise InputError(f"{what} needs one input, the mechanism has {len(inputs)}")
+    return inputs[0].column
+
+
+def whole_turn(model: Model, motion: Motion, name: str) -> Cycle:
+    """A quantity over one turn of the only input.
+
+    Raises
+    ------
+    UnknownNameError
+        If there is no such quantity.
+    InputError
+        If the table is no whole turn of a rotating input in equal steps, or a row has no value.
+    """
+    names = model.motion_quantities.names
+    if model.description.timed:
+        raise InputError("needs a turn of the input at constant speed: leave out its law")
+    if len(names.inputs) != 1 or names.inputs[names.lead] is not Kind.ANGLE:
+        raise InputError("a whole turn needs one input, which rotates")
+    angle = np.asarray(motion.inputs[names.lead]) * model.units.scale(Kind.ANGLE)
+    steps = np.diff(angle)
+    turn = float(angle[-1] - angle[0]) if len(angle) > 1 else 0.0
+    even = len(steps) > 2 and bool(np.ptp(steps) <= _EVEN * math.tau)
+    if not even or abs(abs(turn) - math.tau) > _EVEN * math.tau:
+        first, last = (float(motion.inputs[names.lead][k]) for k in (0, -1))
+        unit = motion.input_units[names.lead]
+        raise InputError(
+            f"needs a whole turn in equal steps, the table goes from {first:g} to {last:g} {unit}: "
+            "change from, to and step of the input"
+        )
+    asked = motion.quantity(name)
+    if asked.group is Group.EVIDENCE:
+        raise InputError(f'"{name}" is evidence of rows, and has no values between them')
+    return cycle(model, motion, lambda rows: asked.values(rows, motion.speed), name)
+
+
+def cycle(model: Model, motion: Motion, of: Callable[[Solved], Array], name: str) -> Cycle:
+    """A quantity over the table of a motion, whatever that is.
+
+    Raises
+    ------
+    InputError
+        If a row has no value, or a place between two rows.
+    """
+    value = np.asarray(of(motion), dtype=float)
+    missing = int(np.sum(~np.isfinite(value)))
+    if missing:
+        raise InputError(f'"{name}" has no value in {missing} of {len(value)} rows')
+    curve = piecewise(model, motion, of)
+    if not np.isfinite(curve.panels.coefficients).all():
+        raise InputError(f'"{name}" has no value at some places between the rows')
+    lead = model.motion_quantities.names.lead
+    scale = float(model.input_scale[list(motion.inputs).index(lead)])
+    return Cycle(place=np.asarray(motion.inputs[lead]) * scale, value=value, curve=curve)
+
+
+def first_extreme(places: Array, values: Array) -> tuple[float, float]:
+    """The first of the places with the largest value, to rounding, and the value."""
+    order = np.argsort(places, kind="stable")
+    largest = values.max()
+    k = order[np.argmax(values[order] >= largest - _EQUAL * np.abs(values).max())]
+    return float(places[k]), float(largest)
+
+
+# ----------------------------------------------------------------------
+# Flywheel of an input whose effort fluctuates.
+
+
+def flywheel(model: Model, motion: Motion, fluctuation: float) -> Flywheel:
+    """The inertia for a fluctuation (ω_max - ω_min) / ω of the speed at a constant motor torque.
+
+    The energy that the speed takes up and gives back is the integral of mean minus effort; its
+    range ΔE asks for the inertia ΔE / (δ ω²). The efforts are those at the constant mean speed.
+
+    Raises
+    ------
+    InputError
+        Without a speed, a whole turn or a positive fluctuation.
+    """
+    description = model.description
+    if not isinstance(description, LoadedBodies):
+        raise InputError("a flywheel needs a mechanism with links and loads")
+    if not fluctuation > 0.0:
+        raise InputError(f"the fluctuation of the speed must be positive, got {fluctuation:g}")
+    if description.timed:
+        raise InputError("a law fixes the speed of the input: leave it out, and give speed")
+    speed, lead = model.speed, model.motion_quantities.names.lead
+    if not speed:
+        raise InputError('a flywheel needs the speed of the input: speed = "300 rpm"')
+    curve = whole_turn(model, motion, effort_name(lead)).curve
+    mean = curve.mean()
+    # power in is positive along the motion, also of an input that turns backwards
+    angle, energy = curve.missing(mean)
+    (fastest, high), (slowest, low) = (first_extreme(angle, k * energy) for k in (1.0, -1.0))
+    stored = high + low
+    unit = force_of_inertia(description.mass, description.length, description.force)
+    scale, units = model.units.scale(Kind.ANGLE), model.units
+    return Flywheel(
+        fluctuation=fluctuation,
+        mean=mean,
+        energy=stored,
+        # eq. (78)
+        inertia=stored / (fluctuation * (speed * speed)) / unit,
+        slowest=slowest / scale,
+        fastest=fastest / scale,
+        units={
+            "mean": units.of(Kind.MOMENT),
+            "energy": units.of(Kind.ENERGY),
+            "inertia": f"{description.mass}·{description.length}²",
+            "input": units.of(Kind.ANGLE),
+        },
+    )
+
+
+# ----------------------------------------------------------------------
+# A motor against the effort that an input needs.
+
+
+_ROUNDING = 1e-12  # of a speed at the end of a table
+
+
+def motor_check(
+    model: Model,
+    motion: Motion,
+    *,
+    motor: Motor | None = None,
+    stall: float | None = None,
+    free_speed: Number | None = None,
+    rated: float | None = None,
+) -> MotorCheck:
+    """The peak and the root mean square of the effort over a turn, or over the whole time of a law,
+    against a motor: the given one, or one with a stall torque and a free speed, or that of the
+    file.
+
+    Raises
+    ------
+    InputError
+        Without a motor, a speed of the input, a law or a whole turn; for several inputs, a motor
+        without torque or speed, or with a table that ends below a speed.
+    """
+    column, timed = column_of(model, "a motor check"), model.description.timed
+    driven = model.untimed or model
+    kind, scale = driven.motion_quantities.names.inputs[column], float(driven.input_scale[0])
+    if not model.speed:
+        raise InputError('a motor needs the speed of the input: speed = "300 rpm"')
+    if motor is None and stall is not None:
+        motor = Motor(stall=stall, free_speed=free_speed)
+    motor = motor or model.description.inputs[0].motor
+    if motor is None:
+        raise InputError("there is no motor: add motor to the input, or give stall and free_speed")
+    effort = motion.quantity(effort_name(column))
+    rate = motion.quantity(f"{column}.velocity")
+
+    def needed(rows: Solved) -> Array:
+        return np.asarray(effort.values(rows, motion.speed), dtype=float)
+
+    def speeds(rows: Solved) -> Array:
+        return np.asarray(rate.values(rows, motion.speed), dtype=float) / scale
+
+    curve = _curve(model, motor, kind, np.abs(speeds(motion)))
+
+    def reserve(rows: Solved) -> Array:
+        return curve(np.abs(speeds(rows))) - np.abs(needed(rows))
+
+    def power(rows: Solved) -> Array:
+        return needed(rows) * speeds(rows) * scale
+
+    turn = (
+        cycle(model, motion, needed, effort.name)
+        if timed
+        else whole_turn(model, motion, effort.name)
+    )
+    places, values = turn.curve.extremes()
+    peak_at, peak = first_extreme(places, np.abs(values))
+    left, spent = (piecewise(model, motion, of).extremes()[1] for of in (reserve, power))
+    at_peak = between_rows(model, motion)(np.array([peak_at]))
+    return MotorCheck(
+        peak=peak,
+        peak_at=peak_at / (1.0 if timed else scale),
+        rms=math.sqrt(turn.curve.mean(power=2)),
+        mean=turn.curve.mean(),
+        available=float(curve(np.abs(speeds(at_peak)))[0]),
+        reserve=float(left.min()),
+        rated=rated,
+        power=float(spent.max()),
+        units={
+            "effort": model.units.of(effort_kind(kind)),
+            "power": model.units.of(Kind.POWER),
+            "input": next(iter(motion.input_units.values())),
+        },
+    )
+
+
+def _curve(model: Model, motor: Motor, kind: Kind, speeds: Array) -> Callable[[Array], Array]:
+    """The torque or force of a motor over speeds, which it must reach (B,) [file unit/s]."""
+    own, drives = model.description, "link" if kind is Kind.ANGLE else "slider"
+    for key, message in motor.mistakes(drives, own.numbers, own.length):
+        raise InputError(f"{key_text(key)} {message}")
+    given = (*motor.speeds, *([] if motor.free_speed is None else [motor.free_speed]))
+    known = [speed_per_second(each, drives, own.numbers, own.length) for each in given]
+    if not motor.speeds:
+        stall = own.numbers(motor.stall or 0.0)
+        for name, value in [("stall", stall), *(("free_speed", free) for free in known)]:
+            if not value > 0.0:
+                raise InputError(f"{name} must be positive, got {value:g}")
+        return motor.curve(drives, own.numbers, own.length)
+    for speed in (speeds.min(), speeds.max()):
+        if not known[0] * (1.0 - _ROUNDING) <= speed <= known[-1] * (1.0 + _ROUNDING):
+            ends = " to ".join(str(each) for each in (motor.speeds[0], motor.speeds[-1]))
+            turning = speed * own.angle.radians * 60.0 / FULL_TURN
+            at = f"{turning:.6g} rpm" if kind is Kind.ANGLE else f"{speed:.6g} {own.length}/s"
+            word = "turns" if kind is Kind.ANGLE else "moves"
+            raise InputError(f"the motor's table goes from {ends}, but the input {word} at {at}")
+    return motor.curve(drives, own.numbers, own.length)
+
+
+# ----------------------------------------------------------------------
+# Harmonics of a quantity over a turn.
+
+
+def harmonics(model: Model, motion: Motion, of: str, count: int = 8) -> Harmonics:
+    """The Fourier sum of a quantity over one turn of the input.
+
+    Its coefficients are integrals, to rounding also of quantities that jump between rows.
+
+    Raises
+    ------
+    UnknownNameError, InputError
+        If there is no such quantity or no whole turn, or its rows are too few.
+    """
+    turn = whole_turn(model, motion, of)
+    rows = len(turn.value) - 1
+    if not 1 <= count < rows / 2.0:
+        raise InputError(f"{rows} rows of a turn give from 1 to {(rows - 1) // 2} harmonics")
+    orders = np.arange(1, count + 1)
+    # eq. (79)
+    parts = 2.0 * np.array([turn.curve.wave(order) for order in orders.tolist()])
+    mean = turn.curve.mean()
+    waves = np.exp(1j * orders[:, None] * turn.place[None, :-1])
+    total = mean + (parts[:, None] * waves).real.sum(axis=0)
+    period = 360.0 / orders
+    return Harmonics(
+        of=of,
+        unit=motion.table(of).units[of],
+        mean=mean,
+        amplitude=np.abs(parts),
+        phase=np.mod(np.degrees(np.angle(parts.conj())) / orders, period),
+        rest=float(np.max(np.abs(turn.value[:-1] - total))),
+    )
+
+
+# ----------------------------------------------------------------------
+# Inflection circle of a link at a position.
+
+
+_STILL = 1e-12  # rad per longest link: a link that does not turn
+
+
+def inflection_circle(
+    model: Model, position: Position, link: str | None = None
+) -> InflectionCircle:
+    """The inflection circle from the derivatives of one point by the angle of the link.
+
+    Raises
+    ------
+    UnknownNameError
+        If there is no such link.
+    InputError
+        If the link does not turn there, or there is no position.
+    """
+    description = model.description
+    if not isinstance(description, LoadedBodies):
+        raise InputError("an inflection circle needs a mechanism with links")
+    moving = [name for name in description.carried if name != GROUND]
+    if link is None:
+        fixed = description.carried.get(GROUND, ())
+        # the coupler, in four links
+        free = [name for name in moving if not set(description.carried[name]) & set(fixed)]
+        if len(free) != 1:
+            raise InputError(f"name the link {choices('links', moving)}")
+        link = free[0]
+    link = find_spelling(link, moving)
+    if link not in moving:
+        raise UnknownNameError(f'there is no link "{link}" {choices("links", moving, link)}')
+    if not position.status.ok:
+        raise InputError(f"there is no position: {position.message}")
+    geometry = Geometry(model, position)
+    point = geometry.place(description.carried[link][0])
+    turn = geometry.angle(link)
+    first, second = float(turn.d1[0]), float(turn.d2[0])
+    place, rate, bend = (complex(part.flat[0]) for part in (point.v, point.d1, point.d2))
+    size = max(abs(rate) / geometry.length, float(geometry.fastest[0]))
+    if not abs(first) > _STILL * size or not math.isfinite(first + second):
+        raise InputError(
+            f'"{link}" does not turn there: its points have no common inflection circle'
+        )
+    # derivatives by the angle of the link
+    by_angle = rate / first
+    bend_by_angle = (bend - by_angle * second) / first**2
+    # eq. (81)
+    pole, opposite = place + 1j * by_angle, place + bend_by_angle
+    return InflectionCircle(
+        link=link,
+        pole=(pole.real, pole.imag),
+        inflection_pole=(opposite.real, opposite.imag),
+        unit=model.units.of(Kind.LENGTH),
+    )

@@ -1,1 +1,0 @@
-"""Symbols of parts: one module for each, named as its part in ``mechanism.part``."""

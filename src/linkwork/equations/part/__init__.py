@@ -1,1 +1,0 @@
-"""Equations of parts: one module for each, named as its part in ``mechanism.part``."""

@@ -1,1 +1,0 @@
-"""What workbooks have of the forces of each kind of part."""

@@ -1,1 +1,0 @@
-"""Loads are forces of the sheet Forces: they have no reactions of their own."""

@@ -1,1 +1,0 @@
-"""Springs are forces of the sheet Forces: they have no reactions of their own."""

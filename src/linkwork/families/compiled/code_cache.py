@@ -1,0 +1,176 @@
+"""Whether compiled code exists already; found without loading it, or Numba."""
+
+from __future__ import annotations
+
+import hashlib
+import importlib.util
+import logging
+import os
+import sys
+import tempfile
+from collections.abc import Iterator
+from functools import cache
+from pathlib import Path
+from threading import RLock
+from typing import Any
+
+from linkwork.core.foundation.errors import InputError
+from linkwork.core.foundation.files import CACHE_VARIABLE, cache_folder, user_cache
+
+#: The loops over lanes, by module, with the function that takes long to compile.
+LOOPS = {"independent": "march", "lockstep": "in_step", "rowwise": "by_rows"}
+#: The loop over solution paths of a homotopy.
+PATH_LOOP = "path_kernel"
+#: Newton-Raphson of one row.
+SINGLE_LOOP = "compiled_rows"
+_FUNCTIONS = LOOPS | {PATH_LOOP: "follow_paths", SINGLE_LOOP: "solve_row"}
+_FOLDERS = {PATH_LOOP: "paths", SINGLE_LOOP: "single"}
+_COMPILED = (
+    "core/numerics/marching.py", "core/record/*.py", "families/compiled/*.py", "families/gpu/*.py",
+    "families/march/*.py", "families/paths/*.py", "families/single/*.py",
+)  # fmt: skip
+_PAYS = 10_000_000  # positions: as long as they take another loop does it take to compile one
+
+
+def is_loaded(loop: str) -> bool:
+    """Whether this process has a loop in use."""
+    return f"linkwork.families.{_package(loop)}.{loop}" in sys.modules
+
+
+def is_compiled(loop: str) -> bool:
+    """Whether an earlier process has left a loop compiled: next to its source, in the user's cache
+    where that cannot be written to, or in the folder named by ``NUMBA_CACHE_DIR``.
+    """
+    digest = sources_digest()
+    return any(digest in index.read_bytes() for index in _indices(loop))
+
+
+@cache
+def sources_digest() -> bytes:
+    """A digest of all sources that are compiled; code compiled from others is out of date."""
+    package = Path(__file__).parents[2]
+    digest = hashlib.sha256()
+    for pattern in _COMPILED:
+        for path in sorted(package.glob(pattern)):
+            digest.update(path.read_bytes())
+    return digest.digest()
+
+
+def loop_serves(loop: str, positions: int) -> bool:
+    """Whether a loop that others can replace saves time for this many positions."""
+    return is_loaded(loop) or positions >= _PAYS or _was_compiled(loop)
+
+
+@cache
+def _was_compiled(loop: str) -> bool:
+    """Whether a loop was compiled when it was first asked for: a look takes as long as a table."""
+    return is_compiled(loop)
+
+
+def _indices(loop: str) -> Iterator[Path]:
+    """Numba's index files of a loop."""
+    given = os.environ.get("NUMBA_CACHE_DIR")
+    shared = Path(given) if given else user_cache("numba", False)
+    package = _package(loop)
+    folders = list(shared.glob(f"{package}_*"))
+    if not given:
+        folders.append(Path(__file__).parents[1] / package / "__pycache__")
+    for folder in folders:
+        yield from folder.glob(f"{loop}.{_FUNCTIONS[loop]}-*.nbi")
+
+
+def _package(loop: str) -> str:
+    """The package of kernels that a loop belongs to."""
+    return _FOLDERS.get(loop, "march")
+
+
+def say_that_it_compiles(loop: str = "") -> None:
+    """Warn once in the log ``linkwork`` that compiling takes time, if it will.
+
+    Without a loop: whether what all of them share was compiled, with any of them.
+    """
+    if not any(map(is_compiled, (loop,) if loop else _FUNCTIONS)):
+        _warn_that_it_compiles()
+
+
+@cache
+def _warn_that_it_compiles() -> None:
+    logging.getLogger("linkwork").warning(
+        "compiling Linkwork's kernels, once after an installation: up to half a minute "
+        '("linkwork compile" compiles all of them beforehand)'
+    )
+
+
+# ----------------------------------------------------------------------
+# Programs written out as modules of their own, in a folder where compiled code is kept.
+
+
+_ONE_AT_A_TIME = RLock()  # a module is among the known ones before it is whole
+
+
+def load_compiled(source: str, function: str) -> Any:
+    """A function of a module of which the source is given; compiled at most once.
+
+    Raises
+    ------
+    InputError
+        If nothing can be written to the folder of the cache.
+    """
+    name = _name(source)
+    with _ONE_AT_A_TIME:
+        known = sys.modules.get(name)
+        if known is None:
+            path = _path(name)
+            if not path.exists() or path.read_text(encoding="utf-8") != source:
+                _write(path, source)
+            known = _load_module(name, path)
+    return getattr(known, function)
+
+
+def is_cached(source: str) -> bool:
+    """Whether the module is there already, so that it costs next to nothing."""
+    return _name(source) in sys.modules or _path(_name(source)).exists()
+
+
+def _path(name: str) -> Path:
+    return _folder() / f"{name.rpartition('.')[2]}.py"
+
+
+def _folder() -> Path:
+    return cache_folder("kernels")
+
+
+def _name(source: str) -> str:
+    """The name of a module: a digest of its text and of all sources it is compiled with."""
+    digest = hashlib.sha256(source.encode() + sources_digest())
+    return f"linkwork_kernel_{digest.hexdigest()[:24]}"
+
+
+def _write(path: Path, source: str) -> None:
+    """Write the file whole or not at all, also while other processes write it."""
+    try:
+        path.parent.mkdir(parents=True, exist_ok=True)
+        with tempfile.NamedTemporaryFile(
+            "w", dir=path.parent, suffix=".part", delete=False, encoding="utf-8"
+        ) as part:
+            part.write(source)
+        os.replace(part.name, path)
+    except OSError as error:
+        raise InputError(
+            f"compiled code cannot be stored in {path.parent} ({error.strerror}): "
+            f"name another folder in {CACHE_VARIABLE}, or use specialised=False"
+        ) from None
+
+
+def _load_module(name: str, path: Path) -> Any:
+    spec = importlib.util.spec_from_file_location(name, path)
+    assert spec is not None
+    assert spec.loader is not None
+    module = importlib.util.module_from_spec(spec)
+    sys.modules[name] = module
+    try:
+        spec.loader.exec_module(module)
+    except BaseException:
+        del sys.modules[name]
+        raise
+    return module

@@ -1,0 +1,656 @@
+"""The coefficients of designs by register of the compiled programs."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass, field, replace
+from functools import cached_property
+
+import numpy as np
+
+from linkwork.core.foundation.arrays import (
+    AnyArray,
+    Array,
+    BoolArray,
+    IndexArray,
+    StatusArray,
+    TurnArray,
+    allocate_aligned,
+)
+from linkwork.core.foundation.containers import read_only
+from linkwork.core.foundation.errors import LinkworkError, internal
+from linkwork.core.foundation.rounding import UNIT_ROUNDOFF
+from linkwork.core.foundation.statuses import Certification, Status
+from linkwork.core.foundation.units import FULL_TURN
+from linkwork.core.mechanism.inputs import Input
+from linkwork.core.motion.following import Drive, turns_freely
+from linkwork.core.motion.limits import BranchEnd
+from linkwork.core.motion.model import Model, leading_input
+from linkwork.core.motion.rows_between import RowsBetween, motion_of_rows
+from linkwork.core.motion.sweeping import sweep, sweep_rows
+from linkwork.core.numerics.system import SolvedRows
+from linkwork.core.results.limit import LimitKind
+from linkwork.core.results.motion import Motion
+from linkwork.families.building import Designs, stay_open
+from linkwork.families.by_kernels.rows import are_served, kernel_of
+from linkwork.families.compiled.execution import Execution
+from linkwork.families.march.dead_points import dead_points
+from linkwork.families.march.step_trial import MarchResult
+from linkwork.families.march.sweep_kernel import Steps, SweepKernel
+
+
+def loop_coefficients(designs: Designs) -> dict[str, Array]:
+    """Coefficients of loops, constants of lines, weights of lengths, (D,) each."""
+    found: dict[str, Array] = {}
+    for term in range(designs.loops.shape[1]):
+        column = designs.loops[:, term]
+        found[f"c{term}.re"] = np.ascontiguousarray(column.real)
+        found[f"c{term}.im"] = np.ascontiguousarray(column.imag)
+    for row in range(designs.linear.shape[1]):
+        found[f"k{row}"] = np.ascontiguousarray(designs.linear[:, row])
+    for k, turns in enumerate(designs.base.compiled.table.is_angle):
+        if not turns:
+            found[f"scale{k}"] = designs.length_scale
+    return found
+
+
+def zero_coefficients(designs: Designs, coefficients: dict[str, Array]) -> set[str]:
+    """Coefficients that are 0 in every design without a problem."""
+    fine = np.flatnonzero(designs.problem == 0)
+    which = slice(None) if len(fine) == len(designs) else fine
+    return {name for name, values in coefficients.items() if not values[which].any()}
+
+
+# ----------------------------------------------------------------------
+# Move designs whose start is off the table's path of inputs to that path.
+
+
+_CHUNK = 1 << 22  # distances in memory at a time
+
+
+def lead_to_rows(
+    designs: Designs,
+    rows: Array,
+    kernel: SweepKernel,
+    coefficients: Mapping[str, Array],
+    which: IndexArray,
+    threads: int,
+) -> tuple[Array, IndexArray]:
+    """Move designs from their starts to the nearest row, along a straight line of inputs.
+
+    Parameters
+    ----------
+    rows : (R, p)
+        Two or more inputs at the rows of the table.
+    coefficients : Mapping[str, (D,)]
+        By register.
+    which : (M,)
+        The designs.
+
+    Returns
+    -------
+    v : (n, M)
+        Unknowns at the rows, NaN if a row is not reached; proved with the kernel's steps.
+    nearest : (M,)
+        The rows.
+    """
+    n, count = kernel.table.unknowns, len(which)
+    own = designs.start[which, n:]
+    nearest = _nearest(designs, rows, which)
+    rate = rows[nearest] - own
+    given = {name: values[which] for name, values in coefficients.items()}
+    for j in range(own.shape[1]):
+        given[f"u{j}.origin"], given[f"u{j}.rate"] = own[:, j].copy(), rate[:, j].copy()
+        given[f"u{j}.spread"] = 4.0 * UNIT_ROUNDOFF * (np.abs(own[:, j]) + np.abs(rate[:, j]))
+    v, radius = np.empty((n, 2, count)), np.empty((2 if kernel.certified else 0, count))
+    found = kernel.result(v, radius)
+    # each design has its own path, from its start (0) to its row (1)
+    ends = np.array([0.0, 1.0])
+    kernel.run(given, designs.start[which, :n].T, np.zeros(count), ends, Steps(), found, threads)
+    return np.where(found.reached[1], v[:, 1], np.nan), nearest
+
+
+def _nearest(designs: Designs, rows: Array, which: IndexArray) -> IndexArray:
+    """The row with the nearest inputs, lengths relative to the longest link, (M,)."""
+    n = designs.base.compiled.solver.unknowns
+    turns = designs.base.compiled.table.is_angle[n:]
+    found = np.empty(len(which), dtype=np.intp)
+    # all distances at once would not fit into memory for a million designs
+    step = max(1, _CHUNK // rows.size)
+    for begin in range(0, len(which), step):
+        mine = which[begin : begin + step]
+        weights = np.where(turns, 1.0, designs.length_scale[mine, None])
+        away = np.abs(rows - designs.start[mine, None, n:]) / weights[:, None, :]
+        found[begin : begin + step] = away.max(axis=2).argmin(axis=1)
+    return found
+
+
+# ----------------------------------------------------------------------
+# The solved rows of all designs, with their evidence.
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class DesignRows:
+    """D designs over R rows of inputs, internal units; written by the march, then frozen.
+
+    ``v`` (n, R, D): unknowns, NaN where there is no position. ``status``, ``certification``
+    (R, D): codes. ``radius`` (R, D): of the proof, weighted, NaN without one; (0, D) if none is
+    requested. ``limits`` (2, D): lower and upper end of the branch, ``limit_kinds`` (2, D): their
+    kinds, see :func:`linkwork.families.design_sweep.ends_as_limits`; NaN without a position.
+    ``alone`` (D,): designs computed one at a time; ``own``: their own results. ``inputs``
+    (R, p, D): if designs have inputs of their own instead of the table's.
+    """
+
+    v: Array
+    status: StatusArray
+    certification: StatusArray
+    radius: Array
+    limits: Array
+    limit_kinds: StatusArray
+    alone: BoolArray
+    own: dict[int, SolvedRows] = field(default_factory=dict)
+    inputs: Array | None = None
+
+    @classmethod
+    def blank(
+        cls, unknowns: int, rows: int, designs: int, certify: bool, falling: bool
+    ) -> DesignRows:
+        """Rows without positions, uninitialised until they are filled or cleared.
+
+        If inputs decrease, unknowns and radii are stored by increasing inputs, the order in which
+        the march writes them.
+        """
+        way = slice(None, None, -1 if falling else 1)
+        return cls(
+            v=allocate_aligned(unknowns, rows, designs)[:, way],
+            status=np.empty((rows, designs), dtype=np.int8),
+            certification=np.empty((rows, designs), dtype=np.int8),
+            radius=allocate_aligned(rows if certify else 0, designs)[way],
+            limits=np.full((2, designs), np.nan),
+            limit_kinds=np.zeros((2, designs), dtype=np.int8),
+            alone=np.zeros(designs, dtype=bool),
+        )
+
+    @cached_property
+    def turns(self) -> TurnArray:
+        """Whole turns from the requested input to that of the position, (R, D)."""
+        return np.zeros(self.status.shape, dtype=np.int32)
+
+    def freeze(self) -> DesignRows:
+        """Make all arrays read-only."""
+        for array in vars(self).values():
+            if isinstance(array, np.ndarray):
+                array.setflags(write=False)
+        return self
+
+    def clear(self, where: BoolArray, certify: bool) -> None:
+        """Remove the position of some rows (R, D) and the status of all."""
+        self.v[:, where] = np.nan
+        self.status[:] = Status.NO_START.code
+        none = Certification.NO_POSITION if certify else Certification.NOT_ASKED
+        self.certification[:] = none.code
+        if certify:
+            self.radius[where] = np.nan
+
+
+# ----------------------------------------------------------------------
+# The input limits of every design of a family.
+
+
+#: Kind of the end of a branch, by code; 0 for none.
+LIMIT_KINDS: tuple[LimitKind | None, ...] = (None, *LimitKind)
+
+
+@internal("of")
+@dataclass(frozen=True, kw_only=True, eq=False, repr=False)
+class FamilyLimits:
+    """The ends of the branch on which each of D designs starts.
+
+    Parameters
+    ----------
+    lower, upper : (D,)
+        The leading input at the ends, in file units, below and above the input of the design's
+        start: -∞, ∞ if the branch has no end on the path to the rows of the table; NaN if an end
+        was met but not located, or the design has no position.
+    lower_kind, upper_kind : (D,) text
+        ``dead point``, ``change point``, ``limit`` (not located), or "" for none.
+
+    Examples
+    --------
+    >>> import linkwork as lw
+    >>> bar = lw.example("four-bar").driven_by(link="rocker", relative_to="ground")
+    >>> limits = bar.family({"O2 A": [40, 42]}).sweep().limits
+    >>> limits.lower.round(2), limits.lower_kind
+    (array([54.9 , 52.03]), array(['dead point', 'dead point'], dtype='<U12'))
+    """
+
+    lower: Array
+    upper: Array
+    lower_kind: AnyArray
+    upper_kind: AnyArray
+
+    def __post_init__(self) -> None:
+        for name in ("lower", "upper", "lower_kind", "upper_kind"):
+            object.__setattr__(self, name, read_only(getattr(self, name)))
+
+    @classmethod
+    def of(cls, limits: Array, kinds: StatusArray, unit: float) -> FamilyLimits:
+        """Limits from values (2, D) and codes (2, D); ``unit``: internal units per file unit."""
+        words = np.array(["" if kind is None else kind.word for kind in LIMIT_KINDS])
+        lower, upper = limits / unit
+        lower_kind, upper_kind = words[kinds]
+        return cls(lower=lower, upper=upper, lower_kind=lower_kind, upper_kind=upper_kind)
+
+    def __len__(self) -> int:
+        return len(self.lower)
+
+    def __repr__(self) -> str:
+        ends = np.concatenate([self.lower_kind, self.upper_kind])
+        told = ", ".join(
+            f"{int((ends == kind.word).sum())} {kind.word}s" for kind in LIMIT_KINDS if kind
+        )
+        return f"<FamilyLimits of {len(self)} designs: {told}>"
+
+
+def ends_as_limits(ends: Iterable[BranchEnd]) -> tuple[Array, StatusArray]:
+    """Where a branch ends below and above, values of the path (2,), and the kinds as codes (2,).
+
+    Infinite where nothing ended it, NaN where the place was not located.
+    """
+    limits, kinds = np.array([-np.inf, np.inf]), np.zeros(2, dtype=np.int8)
+    for end in ends:
+        which = int(end.side > 0.0)
+        limits[which] = end.t if end.limit.located else np.nan
+        kinds[which] = LIMIT_KINDS.index(end.limit.kind)
+    return limits, kinds
+
+
+# ----------------------------------------------------------------------
+# Sweep single designs one after the other.
+
+
+def _at_shared_inputs(designs: Designs, k: int) -> Model:
+    """A single design with the family's table, in case its own table depends on varied numbers."""
+    base, model = designs.base, designs.design(k)
+    # a range given by formulas of dimensions can differ from design to design
+    if np.array_equal(model.rows_in_file_units, base.rows_in_file_units):
+        return model
+    return with_table(model, base)
+
+
+def with_table(model: Model, base: Model, parts: int = 1) -> Model:
+    """A mechanism with the table of another one, whose steps are divided into parts."""
+    inputs = tuple(_with_plain_range(base, which, parts) for which in base.description.inputs)
+    return replace(model, description=replace(model.description, inputs=inputs))
+
+
+def _with_plain_range(base: Model, which: Input, parts: int) -> Input:
+    rows = base.description.rows(which).tolist()
+    step = (rows[-1] - rows[0]) / max(1, parts * (len(rows) - 1))
+    return replace(which, start=rows[0], stop=rows[-1], step=step or None)
+
+
+def leave_open(designs: Designs, which: IndexArray, found: DesignRows) -> None:
+    """The rows of designs (W,) that have no position at the start, as their sweeps leave them."""
+    base = designs.base
+    rows = SolvedRows.blank(
+        base.rows_in_file_units, base.compiled.solver.variables, Status.NO_START
+    )
+    found.alone[which] = True
+    found.v[:, :, which] = found.radius[:, which] = np.nan
+    found.status[:, which] = Status.NO_START.code
+    found.certification[:, which] = Certification.NO_POSITION.code
+    found.own.update(dict.fromkeys(which.tolist(), rows))
+
+
+def sweep_single(designs: Designs, k: int, found: DesignRows, certify: bool) -> None:
+    """Sweep one design by :mod:`linkwork.core.motion.sweeping`."""
+    found.alone[k] = True
+    try:
+        rows, ends = sweep_rows(_at_shared_inputs(designs, k), certify=certify)
+    except LinkworkError:  # reported by ``message_single``
+        found.v[:, :, k] = found.radius[:, k] = np.nan
+        found.status[:, k] = Status.NO_START.code
+        none = Certification.NO_POSITION if certify else Certification.NOT_ASKED
+        found.certification[:, k] = none.code
+        return
+    n = len(found.v)
+    found.v[:, :, k] = rows.v[:, :n].T
+    found.status[:, k], found.certification[:, k] = rows.status, rows.certification
+    if certify:
+        found.radius[:, k] = rows.radius
+    found.own[k] = rows
+    _note_way(designs.base, k, rows, ends, found)
+
+
+def _note_way(
+    base: Model, k: int, rows: SolvedRows, ends: tuple[BranchEnd, ...], found: DesignRows
+) -> None:
+    """Store the whole turns to the rows of a design swept alone, and its limits."""
+    if not (rows.status == Status.CONVERGED.code).any():
+        return
+    found.limits[:, k], found.limit_kinds[:, k] = ends_as_limits(ends)
+    if base.equations.inputs[0].kind == "angle":
+        # a row reached in the other direction has an input whole turns away
+        gap = (rows.v[:, len(found.v)] - base.rows[:, 0]) / FULL_TURN
+        found.turns[:, k] = np.round(np.where(np.isnan(gap), 0.0, gap))
+
+
+def single_motion(designs: Designs, k: int, found: DesignRows) -> Motion:
+    """The motion of a design swept alone."""
+    model, rows = _at_shared_inputs(designs, k), found.own[k]
+    motion = motion_of_rows(model, rows, "", np.zeros(len(rows), dtype=bool))
+    return replace(motion, between=RowsBetween(model, rows))
+
+
+def message_single(designs: Designs, k: int) -> str:
+    """The message of a design's motion, or the reason why it has none."""
+    try:
+        return sweep(_at_shared_inputs(designs, k), certify=False).message
+    except LinkworkError as error:
+        return str(error)
+
+
+# ----------------------------------------------------------------------
+# Solve designs over a table of inputs by compiled kernels, the remaining ones one by one.
+
+
+_ON_PATH = 1e-12
+_FINEST = 1e-8  # relative step for rows directly before a dead point
+
+
+def design_rows(
+    designs: Designs, *, certify: bool, threads: int = 1, execution: Execution | None = None
+) -> DesignRows:
+    """Solve every design over the rows of the mechanism's table, on the branch of its start.
+
+    The compiled march handles loop and linear equations; designs that it cannot complete (dead
+    points, change points, no position at the start) and mechanisms with other equations are swept
+    one at a time, so every row has the same status as in a single sweep.
+    """
+    model = designs.base
+    left = designs.problem == 0
+    path = TablePath.of(model)
+    found = DesignRows.blank(
+        model.compiled.solver.unknowns,
+        len(model.rows),
+        len(designs),
+        certify,
+        falling=path is not None and path.falling,
+    )
+    if path is None:
+        found.clear(np.ones(found.status.shape, dtype=bool), certify)
+    else:
+        left &= ~path.fill(designs, found, certify, threads, execution or Execution())
+        # most of those without a start need not be built to be tried
+        if left.any():
+            open_ones = left & stay_open(designs)
+            leave_open(designs, np.flatnonzero(open_ones), found)
+            left &= ~open_ones
+    for k in np.flatnonzero(left):
+        sweep_single(designs, int(k), found, certify)
+    return found.freeze()
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class TablePath:
+    """The straight line through the table's inputs: u = origin + rate t; ``size``: step."""
+
+    model: Model
+    lead: int
+    origin: Array
+    rate: Array
+    size: float
+
+    @classmethod
+    def of(cls, model: Model) -> TablePath | None:
+        """``None`` if the compiled march cannot be used."""
+        if not are_served(model):
+            return None
+        lead, rate = leading_input(model.rows)
+        drive = Drive.through(model, model.rows[0], rate, lead)
+        path = drive.path
+        return cls(model=model, lead=lead, origin=path.origin, rate=path.rate, size=path.size)
+
+    @property
+    def falling(self) -> bool:
+        """Whether t decreases along the table."""
+        t = self.model.rows[:, self.lead]
+        return bool(t[-1] < t[0])
+
+    def input_radius(self, start: Array) -> Array:
+        """Error bounds of requested inputs, and of those computed from ``start`` (D,), (p,)."""
+        t = self.model.rows[:, self.lead]
+        gap = np.abs(self.model.rows - (self.origin + np.outer(t, self.rate))).max(axis=0)
+        farthest = max(np.abs(t).max(), np.abs(start[np.isfinite(start)]).max(initial=0.0))
+        rounds = (self.origin != 0.0) & (self.rate != 0.0)
+        size = np.abs(self.origin) + np.abs(self.rate) * farthest
+        input_radius: Array = gap + np.where(rounds, 4.0 * UNIT_ROUNDOFF * size, 0.0)
+        return input_radius
+
+    def fill(
+        self, designs: Designs, found: DesignRows, certify: bool, threads: int, execution: Execution
+    ) -> BoolArray:
+        """Fill in the designs that reached all rows; returns their mask, (D,)."""
+        march = self.march(designs, certify, threads, execution)
+        t = self.model.rows[:, self.lead]
+        way = slice(None, None, -1 if self.falling else 1)
+        # the march needs rising values; a falling table is written backwards through views
+        whole, reached = march.through(t[way].copy(), found.v[:, way], found.radius[way])
+        self._note(found, reached[way], whole, certify)
+        for rows, which, turns in march.wound:
+            found.turns[way][rows, which] = turns
+        march.note_limits(found, whole)
+        return whole
+
+    def march(
+        self, designs: Designs, certify: bool, threads: int, execution: Execution
+    ) -> FamilyMarch:
+        """The march of designs that start on the path or can be moved to it."""
+        inputs = designs.start[:, self.model.compiled.solver.unknowns :]
+        start = inputs[:, self.lead]
+        away = np.abs(inputs - (self.origin + self.rate * start[:, None]))
+        served: BoolArray = np.all(away <= _ON_PATH * np.maximum(1.0, np.abs(inputs)), axis=1)
+        return FamilyMarch(self, designs, served, certify, threads, execution)
+
+    def _note(self, found: DesignRows, reached: BoolArray, whole: BoolArray, certify: bool) -> None:
+        """Set the status of reached rows, and of the other rows of finished designs."""
+        proof = Certification.CERTIFIED if certify else Certification.NOT_ASKED
+        if reached.all():
+            found.status[:], found.certification[:] = Status.CONVERGED.code, proof.code
+            return
+        found.clear(~reached, certify)
+        # rows beyond the dead points of designs whose every other row was found
+        found.status[:, whole] = Status.OUT_OF_REACH.code
+        np.copyto(found.status, Status.CONVERGED.code, where=reached)
+        np.copyto(found.certification, proof.code, where=reached)
+
+
+class FamilyMarch:
+    """The compiled march of a family, with the treatment of dead points."""
+
+    def __init__(
+        self,
+        path: TablePath,
+        designs: Designs,
+        served: BoolArray,
+        certify: bool,
+        threads: int,
+        execution: Execution,
+    ) -> None:
+        self.path, self.certify, self.threads = path, certify, threads
+        compiled, model = path.model.compiled, path.model
+        n = compiled.solver.unknowns
+        fine = designs.problem == 0
+        self.coefficients = _coefficients(path, designs)
+        self.zeros = zero_coefficients(designs, self.coefficients)
+        self.kernel = kernel_of(model, frozenset(self.zeros), certify, execution.device)
+        self.kernel.choose_execution(execution)
+        # NaN: the march leaves such designs out
+        self.guess = np.where(served & fine, designs.start[:, :n].T, np.nan)  # otherwise not found
+        self.start = designs.start[:, n + path.lead].copy()
+        self._enter(designs, np.flatnonzero(fine & ~served))
+        self.free = turns_freely(model)
+        #: Rows (W,) reached by designs (W,) after whole turns, and the number of turns.
+        self.wound: list[tuple[IndexArray, IndexArray, int]] = []
+        self.limits = np.repeat([[-np.inf], [np.inf]], len(designs), axis=1)
+
+    def _enter(self, designs: Designs, beside: IndexArray) -> None:
+        """Move designs that start off the path to a row on it."""
+        if not len(beside):
+            return
+        t = self.path.model.rows[:, self.path.lead]
+        rows = self.path.origin + np.outer(t, self.path.rate)
+        v, nearest = lead_to_rows(
+            designs, rows, self.kernel, self.coefficients, beside, self.threads
+        )
+        self.guess[:, beside], self.start[beside] = v, t[nearest]
+
+    def note_limits(self, found: DesignRows, which: BoolArray) -> None:
+        """Store the limits of some designs; those located by the march are dead points."""
+        np.copyto(found.limits, self.limits, where=which)
+        dead = LIMIT_KINDS.index(LimitKind.DEAD_POINT)
+        np.copyto(found.limit_kinds, np.int8(dead), where=which & np.isfinite(self.limits))
+
+    def through(self, t: Array, v: Array, radius: Array) -> tuple[BoolArray, BoolArray]:
+        """March through increasing values of t.
+
+        Returns
+        -------
+        done, reached : (D,), (R, D)
+            Designs that are finished: each row is reached or lies beyond a dead point.
+        """
+        begun, found = self._march(t, v, radius, slice(None))
+        reached = found.reached
+        if reached.all():  # the usual case, quicker to check for all designs together
+            return np.ones(len(begun), dtype=bool), reached
+        done: BoolArray = np.logical_and.reduce(reached, axis=0)
+        stopped = np.flatnonzero(begun & ~done)
+        # with several inputs no dead point is proved here: such designs are swept one at a time
+        if not len(stopped) or len(self.path.rate) > 1:
+            return done, reached
+        limits = np.repeat([[-np.inf], [np.inf]], len(stopped), axis=1)
+        self._limit(limits, found, stopped, stopped)
+        # a row beyond a dead point may lie on the branch a turn away
+        around = (-1, 1) if self.free else ()
+        for turns in around:
+            self._wind(t, turns, v, radius, reached, stopped, limits)
+        for turns in (0, *around):  # rows directly before dead points
+            self._wind(t, turns, v, radius, reached, stopped, limits, _FINEST)
+        self.limits[:, stopped] = limits
+        settled = self._find_complete(t, reached[:, stopped], limits)
+        done[stopped[settled]] = True
+        return done, reached
+
+    def _march(
+        self,
+        t: Array,
+        v: Array,
+        radius: Array,
+        where: IndexArray | slice,
+        apart: float = 0.0,
+        smallest: float | None = None,
+    ) -> tuple[BoolArray, MarchResult]:
+        """Rows at values of t, which may differ by ``apart`` from the requested ones, and a mask of
+        the designs that began.
+
+        ``smallest``: minimum step, if not the default.
+        """
+        steps = Steps() if smallest is None else Steps(smallest=smallest)
+        found = self.kernel.result(v, radius)
+        coefficients = {name: values[where] for name, values in self.coefficients.items()}
+        # a new array: the family's own must not change
+        coefficients["u0.spread"] = coefficients["u0.spread"] + apart
+        begun = self.kernel.run(
+            coefficients,
+            self.guess[:, where],
+            self.start[where],
+            t,
+            steps.times(self.path.size),
+            found,
+            self.threads,
+        )
+        return begun, found
+
+    def _limit(
+        self, limits: Array, found: MarchResult, there: IndexArray, mine: IndexArray
+    ) -> None:
+        """Store the range of t of designs stopped in a march; ``there`` (S,): their indices in the
+        march, ``mine`` (S,): in the family.
+
+        ``limits`` (2, S): infinite if the march was not stopped; NaN if it was stopped without a
+        located dead point.
+        """
+        for way in range(2):
+            ended = np.flatnonzero(~np.isnan(found.end[way, there]) & np.isinf(limits[way]))
+            if not len(ended):
+                continue
+            folds = dead_points(
+                self.path.model.compiled.table,
+                self.zeros,
+                {name: values[mine[ended]] for name, values in self.coefficients.items()},
+                self.kernel.last_nodes(found, way, there[ended]),
+                way,
+            )
+            limits[way, ended] = np.where(folds.found, folds.t, np.nan)
+
+    def _wind(
+        self,
+        t: Array,
+        turns: int,
+        v: Array,
+        radius: Array,
+        reached: BoolArray,
+        stopped: IndexArray,
+        limits: Array,
+        smallest: float | None = None,
+    ) -> None:
+        """Fill the rows reached after whole ``turns``, with steps down to ``smallest``."""
+        moved = t + turns * FULL_TURN
+        inside = (moved[:, None] >= limits[0]) & (moved[:, None] <= limits[1])
+        those = np.flatnonzero((~reached[:, stopped] & inside).any(axis=0))
+        if not len(those):
+            return
+        mine = stopped[those]
+        own, radii = np.empty((len(v), len(t), len(mine))), np.empty((len(radius), len(mine)))
+        # 2π and the sum are rounded
+        apart = (
+            4.0 * UNIT_ROUNDOFF * (float(np.abs(t).max()) + abs(turns) * FULL_TURN)
+            if turns
+            else 0.0
+        )
+        _, further = self._march(moved, own, radii, mine, apart, smallest)
+        row, column = np.nonzero(further.reached & ~reached[:, mine])
+        v[:, row, mine[column]] = own[:, row, column]
+        if self.certify:
+            radius[row, mine[column]] = radii[row, column]
+        reached[row, mine[column]] = True
+        if turns:
+            self.wound.append((row, mine[column], turns))
+        known = limits[:, those]
+        self._limit(known, further, np.arange(len(mine)), mine)
+        limits[:, those] = known
+
+    def _find_complete(self, t: Array, reached: BoolArray, limits: Array) -> BoolArray:
+        """Designs without missing rows within their limits, (S,)."""
+        low, high = limits
+        settled: BoolArray = np.logical_not(np.isnan(limits).any(axis=0))
+        # turns that can bring a row of the table between two limits
+        most = int((t[-1] - t[0]) / FULL_TURN) + 2 if self.free else 0
+        for turns in range(-most, most + 1):
+            moved = t[:, None] + turns * FULL_TURN
+            settled &= ~(~reached & (moved >= low) & (moved <= high)).any(axis=0)
+        return settled
+
+
+def _coefficients(path: TablePath, designs: Designs) -> dict[str, Array]:
+    """The coefficients of a family by register, (D,) each."""
+    found = loop_coefficients(designs)
+    input_radius = path.input_radius(
+        designs.start[:, path.model.compiled.solver.unknowns + path.lead]
+    )
+    for j, (origin, rate) in enumerate(zip(path.origin, path.rate, strict=True)):
+        found[f"u{j}.origin"] = np.full(len(designs), origin)
+        found[f"u{j}.rate"] = np.full(len(designs), rate)
+        found[f"u{j}.spread"] = np.full(len(designs), input_radius[j])
+    return found

@@ -1,0 +1,446 @@
+"""Programs that compute rates, condition and residual at positions, and prove these.
+
+Block by block, as in ``numerics.block_solver``:  J x' = -F_u u',  J x'' = -D²F[(x', u'), (x', u')]
+with the rates of all variables that a block knows. Registers by name:
+
+``v<k>``             variables, the inputs after the unknowns
+``u<j>.rate``        rate of an input by the leading one
+``scale<k>``         weights of variables that are lengths
+``length``           scale of the residuals of equations of lengths
+``first<k>`` ``second<k>``  derivatives of the unknowns by the leading input
+``condition``        the largest ‖J‖·‖J⁻¹‖ of all blocks, weighted, in the largest norm
+``residual``         the largest residual of all equations, scaled
+``u<j>.spread``      how far an input may be from its true value, besides its rounding
+``radius`` ``unique``  a position lies within the first, no other one within the second, weighted;
+                     both NaN where that is not proved
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Iterable, Mapping, Sequence, Set
+from dataclasses import dataclass
+
+import numpy as np
+
+from linkwork.core.foundation.arrays import Array, IndexArray, TurnArray
+from linkwork.core.foundation.loading import share_out
+from linkwork.core.foundation.rounding import UNIT_ROUNDOFF
+from linkwork.core.record.recorder import (
+    LANES,
+    Code,
+    Program,
+    Recorder,
+    Registers,
+    Value,
+    lower_program,
+    reserve,
+)
+from linkwork.core.table.loop_table import LoopTable
+from linkwork.families.compiled.compiling import compiled, compiled_for, types
+from linkwork.families.compiled.interpreter import run
+from linkwork.families.march.closure import BlockPart, Closure, solve_linear
+from linkwork.families.march.proof_program import BlockProof
+
+Number = Value | float
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class PlaceProgram:
+    """A program that computes ``wanted`` named registers from a position."""
+
+    program: Program
+    registers: Registers
+    wanted: tuple[str, ...]
+
+
+class _RateWriter:
+    def __init__(self, table: LoopTable, parts: Sequence[BlockPart], zeros: Set[str]) -> None:
+        self.table, self.n = table, table.unknowns
+        self.rec = rec = Recorder()
+        variables = [rec.input(f"v{k}") for k in range(table.variables)]
+        self.closures = [Closure(table, part, rec, variables, zeros) for part in parts]
+
+    def finish(self, wanted: Sequence[str]) -> PlaceProgram:
+        """The program, which computes these."""
+        registers = Registers()
+        reserve(self.rec, registers)
+        program = lower_program(self.rec, registers, registers.count)
+        return PlaceProgram(program=program, registers=registers, wanted=tuple(wanted))
+
+    # ---------------------------------------------------------------- rates
+
+    def derivatives(self) -> tuple[dict[int, Number], dict[int, Number]]:
+        """Both derivatives of all variables by the leading input."""
+        inputs = range(self.table.variables - self.n)
+        alone = len(inputs) == 1  # a single input leads
+        first: dict[int, Number] = {
+            self.n + j: 1.0 if alone else self.rec.input(f"u{j}.rate") for j in inputs
+        }
+        second: dict[int, Number] = {self.n + j: 0.0 for j in inputs}
+        for closure in self.closures:
+            self._block_rates(closure, first, second)
+        return first, second
+
+    def rates(self) -> list[str]:
+        """Write both derivatives of all unknowns; return the names of the registers."""
+        first, second = self.derivatives()
+        for k in range(self.n):
+            self.rec.write(f"first{k}", first[k])
+            self.rec.write(f"second{k}", second[k])
+        return [f"{name}{k}" for name in ("first", "second") for k in range(self.n)]
+
+    def _block_rates(
+        self, closure: Closure, first: dict[int, Number], second: dict[int, Number]
+    ) -> None:
+        unknowns, known = closure.part.unknowns, closure.known()
+        matrix, drives = closure.jacobian(unknowns), closure.jacobian(known)
+        side = self._driven(drives, [first[k] for k in known])
+        for k, x in zip(unknowns, self._solution(matrix, side), strict=True):
+            first[k] = -x  # eq. (11)
+        bends = closure.bending(first, first)
+        driven = self._driven(drives, [second[k] for k in known])
+        side = [self.rec.add(x, y) for x, y in zip(bends, driven, strict=True)]
+        for k, x in zip(unknowns, self._solution(matrix, side), strict=True):
+            second[k] = -x  # eq. (12)
+
+    def _solution(self, matrix: list[list[Number]], side: Sequence[Number]) -> list[Value]:
+        return solve_linear(self.rec, matrix, [side]).columns[0]
+
+    def _driven(self, drives: list[list[Number]], rates: list[Number]) -> list[Value]:
+        """Σ dF/dv times the rates of known variables."""
+        rec = self.rec
+        return [
+            rec.total([rec.multiply(x, rate) for x, rate in zip(row, rates, strict=True)])
+            for row in drives
+        ]
+
+    # ---------------------------------------------------------------- evidence
+
+    def evidence(self, lengths: Set[int]) -> list[str]:
+        """Condition and residual; ``lengths``: the linear rows that are equations of lengths."""
+        rec = self.rec
+        conditions = [rec.constant(1.0)]
+        conditions += [self._condition(c, self._scales(c, lengths)) for c in self.closures]
+        rec.write("condition", rec.largest(conditions))
+        return ["condition", *self.residual(lengths)]
+
+    def residual(self, lengths: Set[int]) -> list[str]:
+        """The largest residual alone."""
+        rec = self.rec
+        residuals = [rec.constant(0.0)]
+        for closure in self.closures:
+            residuals += [
+                rec.divide(rec.absolute(f), scale)
+                for f, scale in zip(closure.residual(), self._scales(closure, lengths), strict=True)
+            ]
+        rec.write("residual", rec.largest(residuals))
+        return ["residual"]
+
+    def _scales(self, closure: Closure, lengths: Set[int]) -> list[Number]:
+        """Of the residuals of a block."""
+        length = self.rec.input("length")
+        lines = [length if r in lengths else 1.0 for r in closure.lines]
+        return [*[length] * (2 * len(closure.loops)), *lines]
+
+    def _weight(self, k: int) -> Value:
+        """Of a variable: 1 for angles."""
+        return self.rec.constant(1.0) if self.table.is_angle[k] else self.rec.input(f"scale{k}")
+
+    def _condition(self, closure: Closure, scales: Sequence[Number]) -> Value:
+        rec, n = self.rec, len(scales)
+        weights = [self._weight(k) for k in closure.part.unknowns]
+        matrix = closure.jacobian(closure.part.unknowns)
+        units = [[1.0 if i == j else 0.0 for i in range(n)] for j in range(n)]
+        columns = solve_linear(rec, matrix, units).columns
+        forward = self._norm(matrix, weights, scales)
+        inverse = [[columns[j][i] for j in range(n)] for i in range(n)]
+        return rec.multiply(forward, self._norm(inverse, scales, weights))  # eq. (14)
+
+    def _norm(
+        self, matrix: Sequence[Sequence[Number]], columns: Sequence[Number], rows: Sequence[Number]
+    ) -> Value:
+        """The largest sum of moduli of a row, columns multiplied and rows divided by weights."""
+        rec = self.rec
+        return rec.largest(
+            rec.divide(
+                rec.total(
+                    [rec.multiply(rec.absolute(x), w) for x, w in zip(row, columns, strict=True)]
+                ),
+                scale,
+            )
+            for row, scale in zip(matrix, rows, strict=True)
+        )
+
+    # ---------------------------------------------------------------- proof
+
+    def proof(self) -> list[str]:
+        """Prove that one position lies near, for all true values that the inputs may have."""
+        rec = self.rec
+        near: dict[int, Value] = {
+            k: rec.absolute(rec.input(f"v{k}")) * (4.0 * UNIT_ROUNDOFF)
+            + rec.input(f"u{k - self.n}.spread")
+            for k in range(self.n, self.table.variables)
+        }
+        proofs = []
+        for closure in self.closures:
+            used = (*closure.part.unknowns, *closure.known())
+            proofs.append(BlockProof(closure, {k: self._weight(k) for k in used}).within(near))
+            near |= dict(zip(closure.part.unknowns, proofs[-1].error_bound, strict=True))
+        holds = rec.all_of([proof.holds for proof in proofs])
+        rec.write("radius", rec.where(holds, rec.largest(p.radius for p in proofs), math.nan))
+        rec.write(
+            "unique", rec.where(holds, rec.smallest(p.uniqueness_radius for p in proofs), math.nan)
+        )
+        return ["radius", "unique"]
+
+
+def rate_program(
+    table: LoopTable, parts: Sequence[BlockPart], zeros: Set[str] = frozenset()
+) -> PlaceProgram:
+    """First derivatives of all unknowns, then the second ones.
+
+    Parameters
+    ----------
+    table : LoopTable
+        Without function rows.
+    parts : sequence of BlockPart
+        Blocks in the order in which they are solved.
+    zeros : set of str
+        Names of coefficients that are zero in every design.
+    """
+    writer = _RateWriter(table, parts, zeros)
+    return writer.finish(writer.rates())
+
+
+def quantity_program(
+    table: LoopTable,
+    parts: Sequence[BlockPart],
+    write: Callable[[Recorder, Mapping[int, Number], Mapping[int, Number]], Sequence[str]],
+    zeros: Set[str] = frozenset(),
+) -> PlaceProgram:
+    """What a function writes of the derivatives of all variables; see :func:`rate_program`.
+
+    Parameters
+    ----------
+    write : callable
+        Of the recorder, the first and the second derivatives by variable; it returns the names of
+        the registers that it has written.
+    """
+    writer = _RateWriter(table, parts, zeros)
+    first, second = writer.derivatives()
+    return writer.finish(write(writer.rec, first, second))
+
+
+def evidence_program(
+    table: LoopTable,
+    parts: Sequence[BlockPart],
+    lengths: Set[int],
+    zeros: Set[str] = frozenset(),
+) -> PlaceProgram:
+    """Condition and residual; see :func:`rate_program`.
+
+    Parameters
+    ----------
+    lengths : set of int
+        The linear rows whose residual is a length.
+    """
+    writer = _RateWriter(table, parts, zeros)
+    return writer.finish(writer.evidence(lengths))
+
+
+def drawn_program(
+    table: LoopTable,
+    parts: Sequence[BlockPart],
+    lengths: Set[int],
+    zeros: Set[str] = frozenset(),
+) -> PlaceProgram:
+    """Rates and residual, for a page that solves; see :func:`evidence_program`."""
+    writer = _RateWriter(table, parts, zeros)
+    return writer.finish([*writer.rates(), *writer.residual(lengths)])
+
+
+def row_program(
+    table: LoopTable,
+    parts: Sequence[BlockPart],
+    lengths: Set[int],
+    zeros: Set[str] = frozenset(),
+    *,
+    certified: bool,
+) -> PlaceProgram:
+    """Rates, condition and residual; with radii of a proof if it is to be ``certified``.
+
+    Parameters are those of :func:`evidence_program`.
+    """
+    writer = _RateWriter(table, parts, zeros)
+    proof = writer.proof() if certified else []
+    return writer.finish([*writer.rates(), *writer.evidence(lengths), *proof])
+
+
+# ----------------------------------------------------------------------
+# Programs run over positions: of many designs in step, or of one design's rows.
+
+
+_PART = 1024  # designs that one thread works on at a time
+
+
+def at_places(
+    reading: PlaceProgram,
+    coefficients: Mapping[str, Array],
+    v: Array,
+    inputs: Array,
+    turns: TurnArray,
+    threads: int = 1,
+) -> Array:
+    """Run a program at the positions of D designs in R rows.
+
+    Parameters
+    ----------
+    coefficients : Mapping[str, (D,)]
+        By register; names that the program does not use are left out.
+    v : (n, R, D)
+        Unknowns; NaN gives NaN.
+    inputs : (R, p)
+    turns : (R, D)
+        Whole turns by which the first input of a position exceeds the row's.
+
+    Returns
+    -------
+    (len(reading.wanted), R, D)
+    """
+    n, rows, count = v.shape
+    ready = _Ready.of(reading, coefficients, n + inputs.shape[1])
+    design = np.array([coefficients[name] for name in ready.used]).reshape(len(ready.used), count)
+    found = np.empty((len(reading.wanted), rows, count))
+
+    def one(first: int) -> None:
+        part = slice(first, first + _PART)
+        _evaluate(
+            reading.program.code, ready.space(), ready.places,
+            np.ascontiguousarray(design[:, part]),
+            ready.variables, v[:, :, part], inputs, turns[:, part], ready.wanted,
+            found[:, :, part],
+        )  # fmt: skip
+
+    firsts = range(0, count, _PART)
+    share_out(one, firsts, min(threads, len(firsts)))
+    return found
+
+
+def along_rows(reading: PlaceProgram, coefficients: Mapping[str, Array], v: Array) -> Array:
+    """Run a program at R positions of one design.
+
+    Parameters
+    ----------
+    coefficients : Mapping[str, (1,)]
+        By register; names that the program does not use are left out.
+    v : (N, R)
+        Unknowns, then inputs.
+
+    Returns
+    -------
+    (len(reading.wanted), R)
+    """
+    ready = _Ready.of(reading, coefficients, len(v))
+    space = ready.space()
+    for name, place in zip(ready.used, ready.places, strict=True):
+        space[place] = coefficients[name][0]
+    found = np.empty((len(reading.wanted), v.shape[1]))
+    _follow(reading.program.code, space, ready.variables, v, ready.wanted, found)
+    return found
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class _Ready:
+    """The registers that a program reads and writes, by number.
+
+    ``used``: the coefficients that it reads, at ``places``.
+    """
+
+    reading: PlaceProgram
+    used: list[str]
+    places: IndexArray
+    variables: IndexArray
+    wanted: IndexArray
+    height: int
+
+    @classmethod
+    def of(cls, reading: PlaceProgram, coefficients: Iterable[str], variables: int) -> _Ready:
+        named = reading.registers.named
+        used = [name for name in coefficients if name in named]
+        # a variable that the program does not use is loaded into a register of its own
+        spare = max(reading.program.height, reading.registers.count)
+        return cls(
+            reading=reading,
+            used=used,
+            places=np.array([named[name] for name in used], dtype=np.intp),
+            variables=np.array([named.get(f"v{k}", spare) for k in range(variables)], np.intp),
+            wanted=np.array([named[name] for name in reading.wanted], dtype=np.intp),
+            height=spare + 1,
+        )
+
+    def space(self) -> Array:
+        """A workspace with constants in place."""
+        return self.reading.registers.filled(self.height, LANES)
+
+
+@compiled_for(
+    types.void(
+        types.Array(types.uint32, 2, "C"), types.Array(types.float64, 2, "C"),
+        types.Array(types.int64, 1, "C"), types.Array(types.float64, 2, "C"),
+        types.Array(types.int64, 1, "C"), types.Array(types.float64, 2, "C"),
+    )
+)  # fmt: skip
+def _follow(
+    code: Code, w: Array, variables: IndexArray, v: Array, wanted: IndexArray, found: Array
+) -> None:
+    """LANES rows at a time."""
+    rows = v.shape[1]
+    for base in range(0, rows, LANES):
+        lanes = min(LANES, rows - base)
+        for k in range(len(variables)):
+            for lane in range(lanes):
+                w[variables[k], lane] = v[k, base + lane]
+        run(code, w)
+        for j in range(len(wanted)):
+            for lane in range(lanes):
+                found[j, base + lane] = w[wanted[j], lane]
+
+
+@compiled
+def _evaluate(
+    code: Code,
+    w: Array,
+    places: IndexArray,
+    design: Array,
+    variables: IndexArray,
+    v: Array,
+    inputs: Array,
+    turns: TurnArray,
+    wanted: IndexArray,
+    found: Array,
+) -> None:
+    """LANES designs at a time, row by row."""
+    unknowns, rows, count = v.shape
+    for base in range(0, count, LANES):
+        lanes = min(LANES, count - base)
+        for lane in range(LANES):
+            member = base + min(lane, lanes - 1)
+            for j in range(len(places)):
+                w[places[j], lane] = design[j, member]
+        for row in range(rows):
+            for k in range(unknowns):
+                for lane in range(lanes):
+                    w[variables[k], lane] = v[k, row, base + lane]
+            for j in range(inputs.shape[1]):
+                for lane in range(lanes):
+                    w[variables[unknowns + j], lane] = inputs[row, j]
+            if inputs.shape[1]:
+                for lane in range(lanes):
+                    turn = turns[row, base + lane]
+                    if turn:
+                        w[variables[unknowns], lane] += turn * 2.0 * math.pi
+            run(code, w)
+            for j in range(len(wanted)):
+                for lane in range(lanes):
+                    found[j, row, base + lane] = w[wanted[j], lane]

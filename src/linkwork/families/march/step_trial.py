@@ -1,0 +1,505 @@
+"""The verbs of marching, compiled for lanes, and the bounds of a kernel's iterations."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+
+from linkwork.core.foundation.arrays import Array, BoolArray, IndexArray
+from linkwork.core.numerics.marching import (
+    aim as step_size_aim,
+    grow as step_size_grow,
+    hermite_weights as prediction_hermite_weights,
+    is_lost as step_size_is_lost,
+    is_same_spacing as prediction_is_same_spacing,
+    keep_spacing as prediction_keep_spacing,
+    stride as step_size_stride,
+    trusted_nodes as prediction_trusted_nodes,
+)
+from linkwork.core.record.recorder import LANES, ROLES, Code
+from linkwork.families.compiled.compiling import (
+    call_at,
+    called_by_name,
+    carray,
+    inlined,
+    named_tuple,
+    njit_no_refcount,
+    types,
+)
+from linkwork.families.compiled.interpreter import FIELDS, HIGH, run_part
+
+STEPS = 6  # of Newton-Raphson for one block of a trial
+START_STEPS = 50  # of Newton-Raphson for one block, from a guess
+
+aim = njit_no_refcount(step_size_aim)
+stride = njit_no_refcount(step_size_stride)
+is_lost = njit_no_refcount(step_size_is_lost)
+grow = njit_no_refcount(step_size_grow)
+trusted_nodes = njit_no_refcount(prediction_trusted_nodes)
+hermite_weights = njit_no_refcount(prediction_hermite_weights)
+is_same_spacing = njit_no_refcount(prediction_is_same_spacing)
+keep_spacing = njit_no_refcount(prediction_keep_spacing)
+
+
+@njit_no_refcount
+def row_from(t: float, rows: Array) -> int:
+    """The first of the increasing rows that is not below t; how many there are if none is."""
+    # NumPy's search would take the compiler a second
+    low, high = 0, len(rows)
+    while low < high:
+        middle = (low + high) // 2
+        if rows[middle] < t:
+            low = middle + 1
+        else:
+            high = middle
+    return low
+
+
+# ----------------------------------------------------------------------
+# The tasks of a march, and the arrays of its results.
+
+
+class InputTable(NamedTuple):
+    """``rows`` (R,): increasing values of t. ``steps``: the first, largest and smallest step.
+
+    ``unknowns``: how many a position has.
+    """
+
+    rows: Array
+    steps: Array
+    unknowns: int
+
+
+class Tasks(NamedTuple):
+    """Ways to go: each a mechanism, a direction (1 upwards, 0 downwards) and a node to start from.
+
+    ``member``, ``way`` (T,); ``node`` (S, T).
+    """
+
+    member: IndexArray
+    way: IndexArray
+    node: Array
+
+    @classmethod
+    def room(cls, count: int, size: int) -> Tasks:
+        """For this many tasks with nodes of S numbers."""
+        return cls(np.empty(count, np.int64), np.empty(count, np.int64), np.empty((size, count)))
+
+
+class MarchResult(NamedTuple):
+    """Results of M mechanisms; the mechanism k of a part has the column ``first + k``.
+
+    Parameters
+    ----------
+    first : int
+    unknowns : (n, R, M)
+    radius : (R, M), (0, M) without proofs
+    reached : (R, M)
+    end : (2, M)
+        Where a mechanism could go no further, downwards and upwards: the value of t last reached;
+        NaN where it went through all rows.
+    last : (2, 2 S, M)
+        The last node there and the node before.
+    """
+
+    first: int
+    unknowns: Array
+    radius: Array
+    reached: BoolArray
+    end: Array
+    last: Array
+
+
+INPUT_TABLE = named_tuple(
+    [types.Array(types.float64, 1, "C"), types.Array(types.float64, 1, "C"), types.int64],
+    InputTable,
+)
+TASKS = named_tuple(
+    [
+        types.Array(types.int64, 1, "C"),
+        types.Array(types.int64, 1, "C"),
+        types.Array(types.float64, 2, "C"),
+    ],
+    Tasks,
+)
+MARCH_RESULT = named_tuple(
+    [
+        types.int64,
+        types.Array(types.float64, 3, "C"),
+        types.Array(types.float64, 2, "C"),
+        types.Array(types.boolean, 2, "C"),
+        types.Array(types.float64, 2, "C"),
+        types.Array(types.float64, 3, "C"),
+    ],
+    MarchResult,
+)
+
+
+# ----------------------------------------------------------------------
+# One trial of 64 lanes: predict, correct block by block, prove, judge.
+#
+# Positions have five places in a lane: the trial (role 0) and the last four nodes. The places
+# change roles when a trial is taken (``turn`` counts that), so nothing is copied: there are
+# programs for all five turns.
+
+
+# places of programs in the packed code; behind BLOCKS: begin, damped, iterate, prove
+PREDICT, GIVEN, JUDGE, BLOCKS = 0, 1, 2, 3
+# results of a trial; behind LIVE: block by block
+GOOD, RADIUS, LIVE = 0, 1, 2
+
+
+class Topology(NamedTuple):
+    """Programs and registers of one topology.
+
+    Parameters
+    ----------
+    code : (5 K, 5) all programs, in all five turns
+    length : K
+    spans : (Q, 2) where each program begins and ends in the first turn
+    weights : registers of a1, b1, …, b4
+    nodes : (5, S) registers of positions, t last
+    noted : (2 + B,) registers of good, radius, and live of each block
+    shared : registers of inputs and their phasors at t, if these are the same for every design
+    coefficients : (C,) registers of a design's coefficients
+    trial : address of the trial written out (prediction, one correction, proof, judgement), see
+        :func:`linkwork.core.record.printing.trial_source`; 0 where the interpreter does it
+    """
+
+    code: Code
+    length: int
+    spans: IndexArray
+    weights: IndexArray
+    nodes: IndexArray
+    noted: IndexArray
+    shared: IndexArray
+    coefficients: IndexArray
+    trial: int
+
+
+TOPOLOGY = named_tuple(
+    [
+        types.Array(types.uint32, 2, "C"),
+        types.int64,
+        types.Array(types.int64, 2, "C"),
+        types.Array(types.int64, 1, "C"),
+        types.Array(types.int64, 2, "C"),
+        types.Array(types.int64, 1, "C"),
+        types.Array(types.int64, 1, "C"),
+        types.Array(types.int64, 1, "C"),
+        types.int64,
+    ],
+    Topology,
+)
+
+
+@inlined
+def _run_program(topology: Topology, turn: int, w: Array, number: int, lanes: int) -> None:
+    first, spans = turn * topology.length, topology.spans
+    run_part(topology.code, first + spans[number, 0], first + spans[number, 1], w, lanes)
+
+
+@inlined
+def _blocks(topology: Topology) -> int:
+    return len(topology.noted) - LIVE
+
+
+@inlined
+def proves_trials(topology: Topology) -> bool:
+    """Whether its trials are proved."""
+    return len(topology.spans) > BLOCKS + 3 * _blocks(topology)
+
+
+@njit_no_refcount
+def _any(w: Array, row: int, standing: Array, lanes: int) -> bool:
+    """Whether a mask holds in a lane that counts."""
+    found = 0
+    for i in range(lanes):
+        found += w[row, i] * standing[i] != 0.0
+    return found > 0
+
+
+@njit_no_refcount
+def any_live(topology: Topology, w: Array, standing: Array, lanes: int) -> bool:
+    """Whether a lane that counts has not converged."""
+    found = False
+    for k in range(_blocks(topology)):
+        found |= _any(w, topology.noted[LIVE + k], standing, lanes)
+    return found
+
+
+@inlined
+def _iterate(
+    topology: Topology,
+    turn: int,
+    w: Array,
+    program: int,
+    live: int,
+    most: int,
+    standing: Array,
+    lanes: int,
+) -> int:
+    """Newton-Raphson of one block until no lane iterates; how many corrections that took."""
+    for k in range(most):
+        if not _any(w, live, standing, lanes):
+            return k
+        _run_program(topology, turn, w, program, lanes)
+    return most
+
+
+@inlined
+def judge(topology: Topology, turn: int, w: Array, lanes: int) -> None:
+    """Proofs, if there are any, and the judgement."""
+    for program in range(BLOCKS + 3 * _blocks(topology), len(topology.spans)):
+        _run_program(topology, turn, w, program, lanes)
+    _run_program(topology, turn, w, JUDGE, lanes)
+
+
+@njit_no_refcount
+def run_compiled_trial(topology: Topology, turn: int, w: Array, lanes: int) -> None:
+    place, first = 8 * LANES * topology.nodes.shape[1], w.ctypes.data
+    call_at(
+        topology.trial,
+        first + -turn % ROLES * place,
+        first + (1 - turn) % ROLES * place,
+        first + (2 - turn) % ROLES * place,
+        first + (3 - turn) % ROLES * place,
+        first + (4 - turn) % ROLES * place,
+        first + ROLES * place,
+        lanes,
+    )
+
+
+@njit_no_refcount
+def evaluate_inputs(topology: Topology, turn: int, w: Array, together: bool, lanes: int) -> None:
+    """Compute the inputs and their phasors at the trial."""
+    shared = topology.shared
+    if together and len(shared):
+        _run_program(topology, turn, w, GIVEN, 1)
+        for register in shared:
+            w[register, 1:lanes] = w[register, 0]
+    else:
+        _run_program(topology, turn, w, GIVEN, lanes)
+
+
+@njit_no_refcount
+def run_trial(
+    topology: Topology, turn: int, w: Array, standing: Array, together: bool, lanes: int
+) -> int:
+    """From the prediction to the judgement; how many corrections the block with most of them took.
+
+    Parameters
+    ----------
+    standing : (LANES,)
+        1.0 in lanes that count, 0.0 in others.
+    together : bool
+        Whether all lanes are at the same t.
+    lanes : int
+        How many of them are computed.
+    """
+    blocks, live = _blocks(topology), topology.noted[LIVE:]
+    is_written = topology.trial != 0
+    evaluate_inputs(topology, turn, w, together, lanes)
+    if is_written:
+        run_compiled_trial(topology, turn, w, lanes)
+        if not any_live(topology, w, standing, lanes):
+            return 1
+    else:
+        _run_program(topology, turn, w, PREDICT, lanes)
+    most = 0
+    for k in range(blocks):
+        if not is_written:
+            _run_program(topology, turn, w, BLOCKS + k, lanes)
+        elif _any(w, live[k], standing, lanes):  # later blocks were computed with a worse position
+            for later in range(k + 1, blocks):
+                w[live[later], :lanes] = 1.0
+        program = BLOCKS + 2 * blocks + k
+        more = _iterate(topology, turn, w, program, live[k], STEPS - 1, standing, lanes)
+        most = max(most, more)
+    judge(topology, turn, w, lanes)
+    return 1 + most
+
+
+@inlined
+def correct_slowly(topology: Topology, w: Array, lanes: int) -> None:
+    """From a guess in role 1 to a position, with small steps; its own proof.
+
+    The first proof knows nothing of the node it compares with, the second that it is this position.
+    """
+    blocks, nodes = _blocks(topology), topology.nodes
+    everywhere = np.ones(LANES)
+    _run_program(topology, 0, w, PREDICT, lanes)
+    _run_program(topology, 0, w, GIVEN, lanes)
+    for b in range(blocks):
+        live = topology.noted[LIVE + b]
+        w[live, :] = 1.0
+        _iterate(topology, 0, w, BLOCKS + blocks + b, live, START_STEPS, everywhere, lanes)
+    if proves_trials(topology):
+        # the second proof compares the position with itself, and knows its error
+        for _ in range(2):
+            for lane in range(lanes):
+                copy_lane(w, lane, nodes[1], nodes[0])
+            judge(topology, 0, w, lanes)
+
+
+@njit_no_refcount
+def load_all_lanes(w: Array, registers: IndexArray, data: Array, base: int, count: int) -> None:
+    """Load columns of data from ``base`` on into the lanes; the last one fills further lanes."""
+    for j in range(len(registers)):
+        register = registers[j]
+        for lane in range(count):
+            w[register, lane] = data[j, base + lane]
+        w[register, count:] = data[j, base + count - 1]
+
+
+@njit_no_refcount
+def load_lane(w: Array, lane: int, registers: IndexArray, data: Array, member: int) -> None:
+    """One column of data into a lane."""
+    for j in range(len(registers)):
+        w[registers[j], lane] = data[j, member]
+
+
+@njit_no_refcount
+def copy_lane(w: Array, lane: int, to: IndexArray, source: IndexArray) -> None:
+    """Registers of one lane into others."""
+    for j in range(len(to)):
+        w[to[j], lane] = w[source[j], lane]
+
+
+@njit_no_refcount
+def predict_by_tangent(w: Array, lane: int, weights: IndexArray, h: float) -> None:
+    """Predict from the last node alone."""
+    for j in range(len(weights)):
+        w[weights[j], lane] = 0.0
+    w[weights[0], lane] = 1.0
+    w[weights[1], lane] = h
+
+
+@njit_no_refcount
+def extrapolate(
+    w: Array, lane: int, weights: IndexArray, t: float, times: Array, known: int
+) -> None:
+    """Predict at t by the polynomial through the last nodes with their derivatives.
+
+    Parameters
+    ----------
+    times : (4,) of the last nodes
+    known : how many of them there are; fewer are trusted far ahead
+    """
+    used = trusted_nodes(t, times, known)
+    for j in range(len(weights)):
+        w[weights[j], lane] = 0.0
+    for i in range(used):
+        a, b = hermite_weights(t, times, i, used)  # eq. (18)
+        w[weights[2 * i], lane], w[weights[2 * i + 1], lane] = a, b
+
+
+@njit_no_refcount
+def update_weights(
+    w: Array, lane: int, weights: IndexArray, times: Array, step: float, known: int, spacing: Array
+) -> bool:
+    """The weights of a lane's prediction, computed anew where its spacing has changed; whether it
+    has.
+
+    Parameters
+    ----------
+    times : (4,) of the last nodes
+    step : from the last one
+    known : how many of them there are
+    spacing : (4,) for which the weights were computed; updated
+    """
+    if is_same_spacing(step, times, spacing):
+        return False
+    keep_spacing(step, times, spacing)
+    extrapolate(w, lane, weights, times[0] + step, times, known)
+    return True
+
+
+# ----------------------------------------------------------------------
+# A trial as a function with a name, of which all loops over lanes share one compiled copy.
+
+
+_WHOLE, _WHOLES = types.int64, types.CPointer(types.int64)
+_NUMBERS = types.CPointer(types.float64)
+
+
+@called_by_name(
+    "linkwork_trial",
+    types.CPointer(types.uint32), _WHOLE, _WHOLES, _WHOLE, _WHOLES, _WHOLE, _WHOLES, _WHOLE,
+    _WHOLES, _WHOLE, _WHOLE,
+    _WHOLE, _NUMBERS, _NUMBERS, _WHOLE, _WHOLE,
+)  # fmt: skip
+def _correct_and_judge_at(
+    code: Array,
+    length: int,
+    spans: Array,
+    programs: int,
+    nodes: Array,
+    size: int,
+    noted: Array,
+    notes: int,
+    shared: Array,
+    inputs: int,
+    trial: int,
+    turn: int,
+    workspace: Array,
+    standing: Array,
+    together: int,
+    lanes: int,
+) -> int:
+    """The parts of a topology that a trial needs, and its arguments, at addresses."""
+    none = carray(shared, (0,))
+    topology = Topology(
+        carray(code, (ROLES * length, FIELDS)),
+        length,
+        carray(spans, (programs, 2)),
+        none,
+        carray(nodes, (ROLES, size)),
+        carray(noted, (notes,)),
+        carray(shared, (inputs,)),
+        none,
+        trial,
+    )
+    w = carray(workspace, (HIGH, LANES))
+    return run_trial(topology, turn, w, carray(standing, (LANES,)), together != 0, lanes)
+
+
+@njit_no_refcount
+def correct_and_judge(
+    topology: Topology, turn: int, w: Array, standing: Array, together: bool, lanes: int
+) -> int:
+    """:func:`run_trial`, called by name: one copy of it serves all marches."""
+    return _correct_and_judge_at(
+        (
+            topology.code.ctypes.data, topology.length, topology.spans.ctypes.data,
+            len(topology.spans), topology.nodes.ctypes.data, topology.nodes.shape[1],
+            topology.noted.ctypes.data, len(topology.noted), topology.shared.ctypes.data,
+            len(topology.shared), topology.trial,
+            turn, w.ctypes.data, standing.ctypes.data, int(together), lanes,
+        )
+    )  # fmt: skip
+
+
+@njit_no_refcount
+def correct_from_guess(
+    topology: Topology, turn: int, w: Array, standing: Array, lanes: int, unknowns: int
+) -> int:
+    """From a guess in the place of the oldest node, the only one that has weight, to a position:
+    how many corrections that took, 0 if not all lanes have converged. The judgement is made, but
+    need not be good.
+    """
+    nodes = topology.nodes
+    if topology.trial == 0:
+        count = correct_and_judge(topology, turn, w, standing, False, lanes)
+        return 0 if any_live(topology, w, standing, lanes) else count
+    evaluate_inputs(topology, turn, w, False, lanes)
+    for k in range(STEPS):
+        run_compiled_trial(topology, turn, w, lanes)
+        if not any_live(topology, w, standing, lanes):
+            return k + 1
+        for k in range(unknowns):
+            guess, trial = nodes[(ROLES - 1 - turn) % ROLES, k], nodes[-turn % ROLES, k]
+            for i in range(lanes):
+                w[guess, i] = w[trial, i]
+    return 0

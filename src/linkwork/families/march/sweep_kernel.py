@@ -1,0 +1,415 @@
+"""Sharing designs out among threads."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence, Set
+from contextlib import suppress
+from dataclasses import dataclass, replace
+from functools import partial
+from typing import Any
+
+import numpy as np
+
+from linkwork.core.foundation.arrays import Array, BoolArray, IndexArray, allocate_aligned
+from linkwork.core.foundation.errors import InputError
+from linkwork.core.foundation.loading import share_out
+from linkwork.core.record.printing import trial_source
+from linkwork.core.record.recorder import LANES, ROLES, registers_read
+from linkwork.core.table.loop_table import LoopTable
+from linkwork.families import march as loops
+from linkwork.families.compiled.code_cache import is_cached, load_compiled
+from linkwork.families.compiled.execution import Execution
+from linkwork.families.march.closure import BlockPart
+from linkwork.families.march.dead_points import LastNodes
+from linkwork.families.march.march_programs import WEIGHTS, march_programs
+from linkwork.families.march.one_design import (
+    LoadedFamily,
+    RowsOfOne,
+    SingleDesign,
+    begin,
+    march_in_turn,
+)
+from linkwork.families.march.step_trial import InputTable, MarchResult, Tasks, Topology
+
+MOST_DESIGNS = 4096  # designs that one thread works on at a time, at most
+LEAST_LANES = 2  # times LANES: designs in a part where threads share them, at least
+
+
+def share_of_threads(count: int, threads: int) -> list[slice]:
+    """Parts of ``count`` designs, each of whole groups of lanes.
+
+    Of several threads each takes half of its share of the designs that are left, so that the last
+    parts are small and no thread waits long for the others.
+    """
+    parts, first = list[slice](), 0
+    while first < count:
+        size = MOST_DESIGNS
+        if threads > 1:
+            lanes = -(-(count - first) // (LANES * 2 * threads))
+            size = min(MOST_DESIGNS, max(LEAST_LANES, lanes) * LANES)
+        parts.append(slice(first, min(first + size, count)))
+        first += size
+    return parts
+
+
+# ----------------------------------------------------------------------
+# The march of one topology, ready to run: programs in one array, registers by number.
+
+
+# Up to so many designs are solved one at a time with their rows side by side. Side by side
+# themselves they would leave three quarters of the 64 lanes idle.
+_FEW = LANES // 4
+_SIDE_BY_SIDE = LANES  # rows of one design that fill the lanes
+_FEWER = 4  # both ways of so many fill the lanes that a processor computes at once
+_ROUGHLY = 1e-6  # weighted: the tolerance where a proof corrects once more
+
+
+@dataclass(frozen=True, kw_only=True)
+class Steps:
+    """How lanes step: sizes in t, tolerances as weighted changes.
+
+    ``tolerance``: below it a Newton-Raphson step is the last one; the error left is about its
+    square. ``most_correction``, ``most_drift``: without proofs, the largest first correction and
+    change of rates times step that are trusted.
+    """
+
+    first: float = 0.05
+    largest: float = 0.6
+    smallest: float = 1e-5
+    tolerance: float = 1e-8
+    most_turn: float = float(np.radians(40.0))
+    most_correction: float = 0.1
+    most_drift: float = 0.5
+
+    def times(self, size: float) -> Steps:
+        """For a path whose natural step is this many times longer: a length for lengths."""
+        return replace(
+            self,
+            first=size * self.first,
+            largest=size * self.largest,
+            smallest=size * self.smallest,
+        )
+
+
+class SweepKernel:
+    """Programs and registers for one loop table.
+
+    Parameters
+    ----------
+    table : LoopTable
+        Without function rows.
+    parts : sequence of BlockPart
+        In the order in which blocks are solved.
+    zeros : set of str
+        Coefficients that are zero in every design, by register.
+    certified : bool
+        Whether every step is proved.
+    """
+
+    def __init__(
+        self, table: LoopTable, parts: Sequence[BlockPart], zeros: Set[str], certified: bool
+    ) -> None:
+        self.table, self.certified = table, certified
+        programs = march_programs(table, parts, zeros, certified)
+        self.registers = reg = programs.registers
+        self.code = np.concatenate(
+            [section.code for moves in range(ROLES) for section in programs.turned(moves)]
+        )
+        ends = np.cumsum([len(section.code) for section in programs.sections])
+        self.spans = np.stack([np.concatenate([[0], ends[:-1]]), ends], axis=1)
+        self.nodes = np.ascontiguousarray(programs.nodes)
+        noted = ["good", "radius", *[f"live{b}" for b in range(len(parts))]]
+        self.noted = reg.all_of([f"{name}.0" for name in noted])
+        self.shared = reg.all_of(programs.shared)
+        self.weights = reg.all_of(WEIGHTS)
+        self.height = max(programs.height, reg.count)
+        self._sections = programs
+        #: The same without proofs; it scouts ahead where rows are side by side.
+        self.scout = SweepKernel(table, parts, zeros, certified=False) if certified else None
+        #: The workspace of the steps asked for last; replaced whole, for threads share a kernel.
+        self._blank: tuple[Steps, Array] | None = None
+        # written out; the loaded one is kept, for its address is used
+        self._trial: Any = None
+        self._loaded: Any = None
+
+    @property
+    def trial(self) -> int:
+        """Address of the trial written out, 0 where the interpreter does it."""
+        written_out = self._trial  # read once: another thread may choose
+        return 0 if written_out is None else int(written_out.address)
+
+    def choose_execution(self, execution: Execution) -> None:
+        """Write the trial out, if that is asked for or saves time.
+
+        Raises
+        ------
+        InputError
+            If it is asked for, and the folder for compiled code cannot be written to.
+        """
+        self._trial = None  # not what was chosen before: values may not depend on that
+        if execution.specialised:
+            self._trial = self._written_out()
+        elif execution.specialised is None and self._pays_written_out(execution):
+            with suppress(InputError):  # compiled code was not required: the interpreter serves
+                self._trial = self._written_out()
+
+    def _written_out(self) -> Any:
+        if self._loaded is None:
+            self._loaded = load_compiled(self.source(), "trial")
+        return self._loaded
+
+    def _pays_written_out(self, execution: Execution) -> bool:
+        length = len(self.code)
+        return execution.pays(length) or (
+            execution.pays_compiled(length)
+            and (self._loaded is not None or is_cached(self.source()))
+        )
+
+    def source(self) -> str:
+        """A trial of this topology written out: prediction, one correction, proof, judgement."""
+        sections = self._sections
+        ordered = [sections.predict, *sections.begin, *sections.prove, sections.judge]
+        after = [*sections.iterate, *sections.prove, sections.judge]
+        kept = {*self.nodes[0].tolist(), *self.noted.tolist(), *registers_read(after)}
+        return trial_source(
+            [section.code for section in ordered],
+            self.nodes.shape[1],
+            kept,
+            {register: value for value, register in self.registers.constants.items()},
+        )
+
+    def run(
+        self,
+        coefficients: Mapping[str, Array],
+        guess: Array,
+        start: Array,
+        rows: Array,
+        steps: Steps,
+        found: MarchResult,
+        threads: int = 1,
+    ) -> BoolArray:
+        """March D designs through R rows.
+
+        Parameters
+        ----------
+        coefficients : Mapping[str, (D,)]
+            By register; names that no program uses are left out.
+        guess : (n, D)
+            Of the unknowns, at ``start`` (D,).
+        rows : (R,)
+            Increasing values of t.
+        found : MarchResult
+            Filled, see :meth:`result`.
+
+        Returns
+        -------
+        (D,)
+            Designs whose start was found.
+        """
+        count, given = len(start), self.guess_nodes(guess, start)
+        family, table = self._load_family(coefficients, count), self._table(rows, steps)
+        # few designs cannot fill the lanes; their rows can
+        if count <= _FEW:
+            return self._few(family, coefficients, given, table, steps, found)
+        begun = np.zeros(count, dtype=bool)
+
+        def one(part: slice) -> None:
+            own = found._replace(first=part.start)
+            begun[part] = self._part(family.part(part), given[:, part], table, steps, own)
+
+        parts = share_of_threads(count, threads)
+        share_out(one, parts, min(threads, len(parts)))
+        return begun
+
+    def result(self, v: Array, radius: Array) -> MarchResult:
+        """Room for a march: unknowns v (n, R, D) and radii (R, D), (0, D) without proofs, are
+        written to where positions are found.
+        """
+        _, rows, count = v.shape
+        reached, end = np.zeros((rows, count), dtype=bool), np.full((2, count), np.nan)
+        last = np.empty((2, 2 * self.nodes.shape[1], count))
+        return MarchResult(0, v, radius, reached, end, last)
+
+    def guess_nodes(self, guess: Array, start: Array) -> Array:
+        """Guesses (n, D) at ``start`` (D,) as nodes, (S, D)."""
+        node = np.zeros((self.nodes.shape[1], len(start)))
+        node[: self.table.unknowns], node[-1] = guess, start
+        return node
+
+    def last_nodes(self, found: MarchResult, way: int, where: IndexArray) -> LastNodes:
+        """The nodes at which some designs stopped, downwards (0) or upwards (1)."""
+        n, last = self.table.unknowns, found.last[way][:, where]
+        w, s, x = (last[k * n : (k + 1) * n] for k in range(3))
+        q, p = (last[self.nodes.shape[1] :][k * n : (k + 1) * n] for k in range(2))
+        errors = x if self.certified else np.zeros_like(w)
+        return LastNodes(t=found.end[way, where], w=w, s=s, q=q, p=p, x=errors)
+
+    def _coefficient_registers(
+        self, coefficients: Mapping[str, Array], count: int
+    ) -> tuple[IndexArray, Array]:
+        """Registers (C,) of the coefficients that programs use, and their values (C, D)."""
+        named = self.registers.named
+        used = [name for name in coefficients if name in named]
+        values = np.array([coefficients[name] for name in used]).reshape(len(used), count)
+        return np.array([named[name] for name in used], dtype=np.intp), values
+
+    def _load_family(self, coefficients: Mapping[str, Array], count: int) -> LoadedFamily:
+        places, design = self._coefficient_registers(coefficients, count)
+        return LoadedFamily(self._topology(places), design)
+
+    def workspace(self, steps: Steps) -> Array:
+        """A workspace with constants and options in place."""
+        # filling constants takes longer than copying a filled workspace
+        blank = self._blank
+        if blank is None or blank[0] != steps:
+            space = self.registers.filled(self.height, LANES)
+            for name in ("tolerance", "most_turn", "most_correction", "most_drift"):
+                if name in self.registers.named:
+                    space[self.registers.named[name]] = getattr(steps, name)
+            blank = self._blank = steps, space
+        own = allocate_aligned(self.height, LANES)
+        own[:] = blank[1]
+        return own
+
+    def start_nodes(
+        self, family: LoadedFamily, space: Array, given: Array
+    ) -> tuple[Array, BoolArray]:
+        """Nodes (S, D) where designs start, and whether they do, (D,)."""
+        node, begun = np.empty_like(given), np.zeros(given.shape[1], dtype=bool)
+        given = np.ascontiguousarray(given)
+        begin(family.topology, space, family.design, given, node, begun)
+        return node, begun
+
+    def _part(
+        self,
+        family: LoadedFamily,
+        given: Array,
+        table: InputTable,
+        steps: Steps,
+        found: MarchResult,
+    ) -> BoolArray:
+        """Designs side by side."""
+        space = self.workspace(steps)
+        node, begun = self.start_nodes(family, space, given)
+        _march_part(family, space, node, begun, table, found)
+        return begun
+
+    def _table(self, rows: Array, steps: Steps) -> InputTable:
+        sizes = np.array([steps.first, steps.largest, steps.smallest])
+        return InputTable(rows, sizes, self.table.unknowns)
+
+    def _few(
+        self,
+        family: LoadedFamily,
+        coefficients: Mapping[str, Array],
+        given: Array,
+        table: InputTable,
+        steps: Steps,
+        found: MarchResult,
+    ) -> BoolArray:
+        """One design after the other, its rows side by side; then those that this is not for."""
+        done, rows = np.zeros(given.shape[1], dtype=bool), len(table.rows)
+        # whatever this process has compiled: values may not depend on that
+        if rows >= _SIDE_BY_SIDE:
+            alone, n = self._prepare_single(family, coefficients, table, steps), len(given) - 1
+            counts = np.zeros(rows, dtype=np.int64)
+            for k in range(len(done)):
+                guess = np.append(given[: self.table.unknowns, k], given[n, k])
+                own = found._replace(first=k)
+                done[k] = alone.with_design(k).run_side_by_side(guess, own, counts)
+        if done.all():
+            return done
+        space, none = self.workspace(steps), np.zeros(0, np.int64)
+        node, begun = self.start_nodes(family, space, given)
+        left = begun & ~done
+        if np.count_nonzero(left) > _FEWER:
+            _march_part(family, space, node, left, table, found)
+        else:
+            march_in_turn(family, space, node, left, table, found, none)
+        return done | begun
+
+    def prepare_single(
+        self,
+        coefficients: Mapping[str, Array],
+        guess: Array,
+        start: float,
+        rows: Array,
+        steps: Steps,
+    ) -> RowsOfOne:
+        """One design's rows, ready to be computed again and again.
+
+        Parameters
+        ----------
+        coefficients : Mapping[str, (1,)]
+            As for :meth:`run`.
+        guess : (n,)
+            Of the unknowns at ``start``.
+        """
+        family = self._load_family(coefficients, 1)
+        table = self._table(rows, steps)
+        loaded = self._prepare_single(family, coefficients, table, steps).with_design(0)
+        size = 2 * self.nodes.shape[1]
+        room = (np.zeros((len(rows), 1), dtype=bool), np.empty((2, 1)), np.empty((2, size, 1)))
+        return RowsOfOne(
+            loaded=loaded,
+            guess=np.append(guess, start),
+            room=room,
+            counts=np.zeros(len(rows), dtype=np.int64),
+            certified=self.certified,
+        )
+
+    def _prepare_single(
+        self,
+        family: LoadedFamily,
+        coefficients: Mapping[str, Array],
+        table: InputTable,
+        steps: Steps,
+    ) -> SingleDesign:
+        count = family.design.shape[1]
+        ahead, scout = family, self.scout or self
+        if self.scout is not None:
+            if self.trial:
+                self.scout.choose_execution(Execution(specialised=True))
+            ahead = self.scout._load_family(coefficients, count)
+        space = self.workspace(steps)
+        ones = np.ones(count)
+        scales = [coefficients.get(f"scale{k}", ones) for k in range(self.table.unknowns)]
+        return SingleDesign(
+            scout=scout,
+            fresh=partial(self.workspace, steps),
+            proving=self,
+            family=family,
+            ahead=ahead,
+            space=space,
+            own=space if scout is self else scout.workspace(replace(steps, tolerance=_ROUGHLY)),
+            table=table,
+            scale=np.ascontiguousarray(np.array(scales).T),
+        )
+
+    def _topology(self, coefficients: IndexArray) -> Topology:
+        return Topology(
+            code=self.code,
+            length=len(self.code) // ROLES,
+            spans=self.spans,
+            weights=self.weights,
+            nodes=self.nodes,
+            noted=self.noted,
+            shared=self.shared,
+            coefficients=coefficients,
+            trial=self.trial,
+        )
+
+
+def _march_part(
+    family: LoadedFamily,
+    space: Array,
+    node: Array,
+    begun: BoolArray,
+    table: InputTable,
+    kept: MarchResult,
+) -> None:
+    tasks = Tasks.room(2 * len(begun), len(node))
+    many = loops.in_step(family.topology, space, family.design, node, begun, table, tasks, kept)
+    if many:
+        none = np.zeros(0, np.int64)
+        loops.march(family.topology, space, family.design, table, tasks, many, kept, none)

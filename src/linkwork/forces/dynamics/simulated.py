@@ -1,0 +1,152 @@
+"""What can be simulated: its start speeds, its stops, and what refuses it."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
+
+import numpy as np
+
+from linkwork.core.foundation.arrays import Array
+from linkwork.core.foundation.errors import ExpressionError, InputError, choices
+from linkwork.core.foundation.names import canonical
+from linkwork.core.foundation.statuses import ChangePointPolicy
+from linkwork.core.mechanism.dimensions import Number
+from linkwork.core.mechanism.inputs import speed_per_second
+from linkwork.core.mechanism.loaded import LoadedBodies
+from linkwork.core.motion.model import Model
+from linkwork.core.motion.stop_quantities import bounded_quantity
+from linkwork.core.results.motion import Motion
+from linkwork.forces.dynamics.events import Bound
+
+__all__ = [
+    "bounds_of",
+    "check_loaded",
+    "check_masses_move",
+    "model_name",
+    "start_speeds",
+    "straight_or_stop",
+    "with_stops",
+]
+
+_MASSLESS = 1e-12  # of the largest eigenvalue of the matrix of masses: none
+
+
+def model_name(model: Model) -> str:
+    """The mechanism's name in quotation marks."""
+    return f'"{model.description.name}"'
+
+
+def straight_or_stop(change_points: str | ChangePointPolicy) -> ChangePointPolicy:
+    """The policy at change points of a motion in time, which takes no other branch.
+
+    Raises
+    ------
+    InputError
+        For another policy.
+    """
+    policy = ChangePointPolicy.of(change_points)
+    if policy is ChangePointPolicy.TURN:
+        raise InputError('a simulation goes straight on or stops: change_points "stop", "straight"')
+    return policy
+
+
+def check_loaded(model: Model) -> LoadedBodies:
+    """The description of a mechanism that loads can move.
+
+    Raises
+    ------
+    InputError
+        If a law drives it, or nothing in it has mass.
+    """
+    description, name = model.description, model_name(model)
+    if not isinstance(description, LoadedBodies):
+        raise InputError(f"{name} has plain equations: only links have masses")
+    if description.inputs and all(which.law is not None for which in description.inputs):
+        raise InputError(f"a law drives {name}: leave it out to simulate")
+    if not description.inputs:
+        raise InputError(f"{name} has no input: it does not move")
+    if not description.masses and all(each.inertia is None for each in description.inputs):
+        raise InputError(f"nothing in {name} has mass: add [masses], or inertia to the input")
+    return description
+
+
+def check_masses_move(model: Model, masses: Array) -> None:
+    """Refuse inputs that can move without a mass; ``masses`` (f, f) at the start.
+
+    Raises
+    ------
+    InputError
+        With what to add.
+    """
+    sizes = np.linalg.eigvalsh(masses)
+    if not sizes[0] > _MASSLESS * sizes[-1]:
+        raise InputError(
+            f"{model_name(model)} has {len(model.description.inputs)} inputs, and they can move at "
+            "the start without moving a mass: add [masses], or inertia to the inputs"
+        )
+
+
+def start_speeds(model: Model, given: Number | Mapping[str, Number]) -> Array:
+    """The speed of every input at the start, [rad/s] or [length/s], (p,)."""
+    description = model.description
+    names = [variable.name for variable in model.equations.inputs]
+    if isinstance(given, Mapping):
+        wanted = {canonical(name): value for name, value in given.items()}
+    elif len(names) == 1 or given not in (0, "0"):
+        if len(names) > 1:
+            raise InputError(
+                f"{model_name(model)} has {len(names)} inputs: name the start speed of each, "
+                f"for example {names[0]}={given}"
+            )
+        wanted = {canonical(names[0]): given}
+    else:
+        wanted = {}
+    known = {canonical(name): k for k, name in enumerate(names)}
+    speeds = np.zeros(len(names))
+    for name, value in wanted.items():
+        if name not in known:
+            raise InputError(
+                f'start speed: there is no input "{name}" {choices("inputs", names, name)}'
+            )
+        k = known[name]
+        if description.inputs[k].law is not None:
+            raise InputError(f"start speed: a law drives {names[k]}, which has its speed")
+        kind = description.inputs[k].drives[0]
+        try:
+            own = speed_per_second(value, kind, description.numbers, description.length)
+        except ExpressionError as error:
+            raise InputError(f"start speed: {error.message}") from None
+        speeds[k] = own * float(model.input_scale[k])
+    return speeds
+
+
+def with_stops(motion: Motion, bounds: Sequence[Bound], pushes: Array, impulses: Array) -> Motion:
+    """The motion with what its stops give: pushes and impulses (K, S) of its first K rows."""
+    tables: list[dict[str, Array]] = [{}, {}]
+    for table, parts in zip(tables, (pushes, impulses), strict=True):
+        for bound, part in zip(bounds, parts.T, strict=True):
+            none = np.zeros(len(motion))
+            none[len(part) :] = np.nan
+            none[: len(part)] = bound.side * part
+            table[bound.asked.name] = table.get(bound.asked.name, 0.0) + none
+    return replace(motion, stop_forces=tables[0], stop_impulses=tables[1])
+
+
+def bounds_of(named: Model) -> list[Bound]:
+    """The bounds of all stops."""
+    description = named.description
+    assert isinstance(description, LoadedBodies)
+    numbers = description.numbers
+    return [
+        Bound(
+            key=("stops", k, field),
+            asked=bounded_quantity(stop.of, named.motion_quantities),
+            value=numbers(value),
+            side=side,
+            restitution=numbers(stop.restitution),
+        )
+        for k, stop in enumerate(description.stops)
+        for field, value, side in (("from", stop.start, 1.0), ("to", stop.stop, -1.0))
+        if value is not None
+    ]

@@ -1,0 +1,331 @@
+"""The motion along the curve of positions, step by step, from event to event."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+
+from linkwork.forces.dynamics.collocation import Step, shorter_step, try_step
+from linkwork.forces.dynamics.events import Event, Pace, first_event, just_behind, margins_on
+from linkwork.forces.dynamics.rest import Passage, Support, first_start, just_ahead
+
+__all__ = ["Travel"]
+
+_SHORTEST = 1e-14  # of the whole time: a shorter step makes no way
+_FIRST = 0.02  # of the time in which the leg would be passed: the first step
+_MOST_TRIES = 3  # to find the signs of friction at the beginning of a step
+_AT_REST = 1e-5  # of the fastest speed so far
+_ZERO = 1e-13  # of the fastest speed: none
+
+
+@dataclass(eq=False)
+class Travel(Passage):
+    """A motion under way, from event to event."""
+
+    def begin(self, input_speed: float) -> None:
+        """Set the speed of the input at the start, [rad/s] or [length/s]."""
+        self.speed = input_speed / float(self.leg.input_slope(np.array([self.s]))[0])
+        self._switch()
+        self._touch()
+        if self.speed:
+            self._hold()
+            way = self.speed
+        else:
+            self.still, way = True, self._starting()
+        ((stop, push),) = self._support.pushes(self.leg, self.s, np.zeros(1), self.gain)
+        if way:
+            self._record(0.0, self.s, self.speed, self._now())
+        else:
+            self._record(0.0, self.s, 0.0, 0.0, stop=stop, push=push)
+        edges = self.leg.table.edges
+        # a start at the end of a leg that moves away from it is on the leg before
+        if (self.s <= edges[0] and way < 0.0) or (self.s >= edges[-1] and way > 0.0):
+            self._leave(0 if way < 0.0 else 1)
+            self._touch()
+        for number in list(self.touching.values()):
+            if self.speed:
+                self._hit(number)
+
+    def run(self) -> None:
+        """Step until all times are reached or the motion ends."""
+        h, rougher = self._first_step(), math.inf
+        pace = Pace(self.until)
+        while self.t < self.until and not self.ended:
+            if (self.still and self._rest()) or self._is_outside():
+                continue
+            if pace.crawls(self.t, self.s):
+                self.ended = self._unbounded()
+                continue
+            short = self.until - self.t
+            step, following, rough = try_step(
+                self._acceleration, self.t, self.s, self.speed, min(h, short), rougher
+            )
+            shorter = None if step is None else shorter_step(step, *self.leg.reach)
+            if shorter is not None:
+                step, following = None, shorter
+            if step is not None and self._misjudges(step):
+                continue
+            if step is None:
+                h, rougher = following, rough
+                if h < _SHORTEST * self.until:
+                    self.ended = self._unbounded()
+                continue
+            rougher = rough if following <= step.h else math.inf
+            event = self._event(step)
+            end = step.t + step.h if event is None else self._end(event)
+            self._take(step, end)
+            h = following if event is None and step.h < short else max(following, h)
+            if event is not None:
+                self._meet(event)
+                rougher = math.inf
+                if event.number >= 2:  # the accelerations have jumped
+                    h = min(h, self._first_step(), self.longest)
+            if self.progress is not None:
+                self.progress(min(1.0, self.t / self.until))
+
+    def _first_step(self) -> float:
+        low, high = sorted((self.leg.leg.begin, self.leg.leg.end))
+        pace, pull = abs(self.speed), abs(self._now())
+        times = [self.until]
+        if pace > 0.0:
+            times.append((high - low) / pace)
+        if math.isfinite(pull) and pull > 0.0:
+            times.append(math.sqrt((high - low) / pull))
+        return max(_FIRST * min(times), 10.0 * _SHORTEST * self.until)
+
+    def _event(self, step: Step) -> Event | None:
+        margins = margins_on(self.leg, self.bounds, self.rubbing, self.gain)
+        return first_event(step, step.t + step.h, margins, self.reduction.switch_count)
+
+    def _end(self, event: Event) -> float:
+        """Stops are met just before, all others just after."""
+        return event.before if 2 <= event.number < 2 + len(self.bounds) else event.after
+
+    def _meet(self, event: Event) -> None:
+        bounds = 2 + len(self.bounds)
+        if event.number < 2:
+            self._cross(event.number)
+        elif event.number < bounds:
+            self._hit(event.number - 2)
+        elif self.rubbing is not None and event.number == bounds:
+            self._come_to_rest("rest")
+        elif event.falls:
+            self._hold()
+        else:
+            self._switch_behind(self._now())
+            self._go_on_switched()
+
+    def _switch_behind(self, pull: float) -> None:
+        """Let switches have their values just behind; ``pull``: the acceleration in front."""
+        size = abs(self.s) + float(np.ptp(self.leg.table.edges))
+        self.s, self.speed = just_behind(self.s, self.speed, pull, size)
+        self._switch()
+
+    def _go_on_switched(self) -> None:
+        # the row has the loads, and so the acceleration, after the switch
+        if abs(self.speed) <= _ZERO * self.fastest and not self.reduction.rubs:
+            self._come_to_rest("switch")
+            return
+        self._hold()
+        self._record(self.t, self.s, self.speed, self._now(), "switch")
+        self._check_chatter()
+        self._hit_passed()
+
+    def _hit_passed(self) -> None:
+        for number, bound in enumerate(self.bounds):
+            if bound.is_passed(self.leg, self.s, self.speed, self.t, self.gain):
+                self._hit(number)
+
+    def _cross(self, side: int) -> None:
+        """Onto the next leg; switches and stops may lie at the edge between the two."""
+        pull, held = self._now(), self.reduction.held
+        self._leave(side)
+        if self.ended:
+            return
+        state = self.s, self.speed
+        self._switch_behind(pull)
+        if self.reduction.held != held:
+            self._go_on_switched()
+            return
+        self.s, self.speed = state
+        self._hold()
+        self._hit_passed()
+
+    def _switch(self, way: float = 0.0) -> None:
+        """Let every switch have the value that it has now, or as a motion that way begins."""
+        if not self.reduction.switch_count:
+            return
+        place, pace = just_ahead(self.leg, self.s, way) if way else (self.s, self.speed)
+        s, speed, t = (np.array([x]) for x in (place, pace, self.t))
+        self.reduction.release()
+        self.reduction.switch(self.leg.margins(s, speed, t, self.gain)[0].tolist())
+
+    def _check_chatter(self) -> None:
+        if not self.chatter.starts(self.t):
+            return
+        self.ended = "a comparison in a load switches without end there"
+        slow = max(_AT_REST * self.fastest, abs(self._now()) * self.chatter.span)
+        if "t" not in self.reduction.names and abs(self.speed) < slow:
+            # pushed back either way, also at a speed that the loads give in that time: it stays
+            begin = self.chatter.recent[0]
+            self.ended, self.speed, self.holder = "", 0.0, "a load that switches there"
+            self.held = begin * (begin > _SHORTEST * self.until)
+            gone = [k for k in self.samples if k.event == "switch" and k.t > self.held]
+            self.samples = [k for k in self.samples if k not in gone]
+            self._stay(self.until)
+
+    def _stay(self, until: float) -> None:
+        """Remain at rest up to a time."""
+        times = self.times[self.taken :]
+        times = times[times <= until]
+        pushes = self._support.pushes(self.leg, self.s, times, self.gain)
+        for t, (stop, push) in zip(times.tolist(), pushes, strict=True):
+            self._record(t, self.s, 0.0, 0.0, stop=stop, push=push)
+        self.taken += len(times)
+        self.t = until
+
+    def _is_outside(self) -> bool:
+        """Whether the leg ended at another event, to rounding; the motion is then on the next."""
+        low, high = self.leg.table.edges[[0, -1]]
+        out = bool((self.s <= low and self.speed < 0) or (self.s >= high and self.speed > 0))
+        if out:
+            self._cross(0 if self.speed < 0.0 else 1)
+        return out
+
+    def _leave(self, side: int) -> None:
+        """Onto the next leg, where another variable may lead."""
+        leg = self.leg.leg
+        ahead = (leg.begin <= leg.end) == (side == 1)
+        self._note_lap(ahead)
+        number, count = self.number + (1 if ahead else -1), len(self.curve.legs)
+        if not 0 <= number < count:
+            if not self.curve.closed:
+                self.ended = self.curve.ends[1 if ahead else 0]
+                return
+            self.lap += 1 if ahead else -1
+            number %= count
+        old, edge = leg.lead, self.leg.table.edges[side * -1]
+        places = self.leg.table(np.array([edge, self.s]))
+        self.number = number
+        new = self.leg.leg
+        # a short way beyond the end may have been missed: it belongs to the next leg
+        beyond = float(places[1, new.lead] - places[0, new.lead])
+        self.s = (new.begin if ahead else new.end) + beyond
+        if old != new.lead:
+            self.speed /= float(self.leg.slopes(np.array([self.s]))[0, old])
+        self._switch()  # margins of springs are those of the leg
+        self._hold()
+
+    def _hit(self, number: int) -> None:
+        bound, before, pull = self.bounds[number], self.speed, self._now()
+        here = self.s, self.t, self.gain
+        if bound.way(self.leg, *here) * before >= 0.0:
+            return
+        self.speed *= -bound.restitution
+        self._switch()  # of the speed, which has jumped
+        self._hold()
+        flight = bound.flight(self.leg, self.speed, self._now(), self.until)
+        self.longest = 2.0 * flight or math.inf
+        self.touching = {}
+        if flight == 0.0:
+            self.speed, self.rubbing, self.still = 0.0, None, True
+            self.touching = {math.copysign(1.0, before): number}
+        mass = float(self.leg.numbers(np.array([self.s]))[0, 0])
+        impulse = mass * (self.speed - before) / bound.slope(self.leg, *here)
+        self._record(
+            self.t, self.s, before, pull, f"stop of {bound.asked.name}", stop=number,
+            impulse=impulse,
+        )  # fmt: skip
+
+    def _touch(self) -> None:
+        """Note the stops that are touched at the start, by the way that each blocks."""
+        self.touching = {}
+        for number, bound in enumerate(self.bounds):
+            away = bound.way_off(self.leg, self.s, self.t, self.gain)
+            if away and away * self.speed <= 0.0:
+                self.touching[-away] = number
+
+    def _starting(self) -> float:
+        """The way in which a machine at rest starts now, 0.0 if it does not; its switches and the
+        signs of friction are those of this motion.
+        """
+        self.reduction.release()
+        free = self._support.free
+        _, way = first_start(self.leg, self.s, self.t, self.t, self.gain, free)
+        self._set_off(way)
+        return way
+
+    @property
+    def _support(self) -> Support:
+        return Support(self.bounds, self.touching)
+
+    def _set_off(self, way: float) -> None:
+        self._switch(way)
+        if way and self.reduction.rubs:
+            self.rubbing = self.leg.hold(self.s, 0.0, self.t, self.gain, way)
+
+    def _come_to_rest(self, event: str) -> None:
+        """Stop where friction or a load that switches may hold the machine."""
+        speed, self.speed, self.rubbing, self.still = self.speed, 0.0, None, True
+        way = self._starting()
+        if not way:
+            self._record(self.t, self.s, 0.0, 0.0, "rest")
+        elif event == "switch":
+            self.still, self.speed = False, math.copysign(speed, way)
+            self._record(self.t, self.s, self.speed, self._now(), event)
+
+    def _rest(self) -> bool:
+        """Stay at rest as long as nothing starts the machine; whether time has passed."""
+        self.reduction.release()
+        begin, free = self.t, self._support.free
+        start, way = first_start(self.leg, self.s, begin, self.until, self.gain, free)
+        self._stay(np.nextafter(start, begin) if way else start)
+        if not way:
+            self.held = begin
+            self.holder = self._support.holder(self.leg, self.s, self.t, self.gain)
+            return True
+        self.t = start
+        self._set_off(way)
+        self.still = False
+        place = self.s
+        beyond, self.speed = just_ahead(self.leg, place, way)
+        if self.touching:  # behind what rounding could take for the stop
+            self.s, self.touching = beyond, {}
+        if self.taken < len(self.times) and self.times[self.taken] == start:
+            self._record(start, place, 0.0, self._now())
+            self.taken += 1
+        if start > begin:
+            self._record(start, place, 0.0, self._now(), "start")
+        return start > begin
+
+    def _hold(self) -> None:
+        """Take the signs of friction from the state, for the steps that follow."""
+        if not self.reduction.rubs or not self.speed:
+            return
+        direction = math.copysign(1.0, self.speed)
+        self.rubbing = self.leg.hold(self.s, self.speed, self.t, self.gain, direction)
+
+    def _misjudges(self, step: Step) -> bool:
+        """Whether friction has another sign as soon as a step begins; it is taken from there."""
+        if self.rubbing is None or self.rubbing.sides is None or self.tried > _MOST_TRIES:
+            self.tried = 0
+            return False
+        times = step.t + np.array([0.0, 0.02]) * step.h
+        s, speed, _ = step.at(times)
+        margins = self.leg.friction_margins(s, speed, times, self.gain, self.rubbing)
+        if not ((margins[0] <= 0.0) & (margins[1] < 0.0)).any():
+            self.tried = 0
+            return False
+        self.tried += 1
+        place, pace, time = float(s[1]), float(speed[1]), float(times[1])
+        self.rubbing = self.leg.hold(place, pace, time, self.gain, self.rubbing.direction)
+        return True
+
+    def _unbounded(self) -> str:
+        """Why no step succeeds."""
+        if self.rubbing is not None and not math.isfinite(self._now()):
+            return "friction locks the mechanism there: no acceleration is in equilibrium with it"
+        found = self.leg.failing_load(self.s, self.speed, self.t, self.gain, self.until)
+        return found or "the accelerations have no bound there"

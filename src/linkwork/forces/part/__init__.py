@@ -1,1 +1,0 @@
-"""The reactions of parts, one module for each kind."""

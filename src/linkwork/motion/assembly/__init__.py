@@ -1,1 +1,0 @@
-"""All assembly configurations of a mechanism at one input."""

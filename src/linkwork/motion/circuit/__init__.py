@@ -1,1 +1,0 @@
-"""Circuits and branches: all positions reachable without disassembly."""

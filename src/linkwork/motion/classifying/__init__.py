@@ -1,1 +1,0 @@
-"""Classify a mechanism: chain, type, Assur groups."""

@@ -1,1 +1,0 @@
-"""Continuation: branches along inputs, curves beyond dead points, change points and folds."""

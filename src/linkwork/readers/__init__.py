@@ -1,0 +1,18 @@
+"""Mechanism files of other programs: read as linkages, with a list of what was left out."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from linkwork.core.foundation.loading import loader
+
+if TYPE_CHECKING:
+    from linkwork.readers.assembly import LeftOut as LeftOut
+    from linkwork.readers.formats import (
+        FORMATS as FORMATS,
+        WRITERS as WRITERS,
+        read_foreign as read_foreign,
+        write_foreign as write_foreign,
+    )
+else:
+    __getattr__ = loader(__name__)

@@ -1,0 +1,75 @@
+"""``linkwork import``"""
+
+from __future__ import annotations
+
+import click
+
+from linkwork.api.foreign import Imported, imported
+from linkwork.core.commands.options import (
+    check_outputs,
+    debug_option,
+    file_argument,
+    json_option,
+    write_text,
+)
+from linkwork.core.commands.terminal import print_json, print_lines, title_lines, wrapped
+from linkwork.core.textfile.writer import write_text as text_of
+from linkwork.readers.formats import FORMATS
+
+__all__ = ["import_command"]
+
+
+@click.command("import")
+@file_argument
+@click.option("-o", "--output", metavar="PATH", help="Write this mechanism file (.toml).")
+@click.option(
+    "--as",
+    "form",
+    type=click.Choice(list(FORMATS)),
+    help="The format, if suffix and content do not say it.",
+)
+@json_option
+@debug_option
+def import_command(file: str, output: str | None, form: str | None, as_json: bool) -> None:
+    """Read a mechanism from a file of another program.
+
+    PMKS and PMKS+ links and texts, pylinkage JSON, Linkage (.linkage2), Pyslvs
+    expressions, GeoGebra (.ggb), DXF sketches, MJCF and URDF. The list says
+    what was not carried over. Nothing in a file is executed.
+
+    \b
+      linkwork import crank.linkage2 -o crank.toml
+      linkwork import sketch.dxf -o sketch.toml
+      linkwork import "https://app.pmksplus.com/?..." -o pmks.toml
+    """
+    check_outputs(file, output)
+    found = imported(file, form)
+    text = text_of(found.description)
+    if output is not None:
+        write_text(output, [text])
+    if as_json:
+        print_json(_data(found) | {"written": [output] if output else [], "text": text})
+    else:
+        print_lines(_page(found, output))
+
+
+def _data(found: Imported) -> dict[str, object]:
+    return {
+        "format": found.format,
+        "name": found.description.name,
+        "carried": found.carried,
+        "renamed": dict(found.renamed),
+        "missing": found.missing(),
+        "left_out": [{"what": own.what, "places": list(own.places)} for own in found.left_out],
+    }
+
+
+def _page(found: Imported, output: str | None) -> list[str]:
+    """Name and counts, changed names, what was left out."""
+    head, *notes = str(found).splitlines()
+    lines = [*title_lines(found.description.name), *wrapped(head)]
+    lines += [line for note in notes for line in wrapped(note, "  ", "    ")]
+    if missing := found.missing():
+        lines += wrapped(f"still missing: {missing}", "  ", "    ")
+    written = f"Wrote {output}." if output else "Nothing was written: add -o mechanism.toml"
+    return [*lines, written]

@@ -1,0 +1,248 @@
+"""DXF sketches: circles are pins, lines and polylines between them are links.
+
+Pairs of group codes and values after Autodesk's DXF Reference, ASCII form. Pins and lines on a
+layer ``ground`` are fixed, a line on a layer ``input`` is driven.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator
+from dataclasses import dataclass, field
+
+from linkwork.core.foundation.names import GROUND
+from linkwork.readers.assembly import Assembly, Source, drive_joint
+
+__all__ = ["SUFFIXES", "TITLE", "matches", "read"]
+
+TITLE, SUFFIXES = "DXF sketch", (".dxf",)
+_GROUND_LAYERS = ("ground", "frame", "fixed", "base")
+_INPUT_LAYERS = ("input", "driver", "crank", "motor")
+_TRACE_LAYERS = ("trace", "path")
+_UNITS = {"1": "in", "2": "ft", "4": "mm", "5": "cm", "6": "m", "13": "µm", "14": "dm"}
+_TOLERANCE = 1e-6  # of a circle's radius or a line's length: drawn at the same place
+_ARCS = "arc of a polyline: read as straight"
+_MOST = 20_000  # circles, lines and polylines
+
+
+def matches(head: str) -> bool:
+    """Whether a text begins like this format."""
+    begin = r"\s*(999\s*\n[^\n]*\n\s*)*0\s*\r?\n\s*SECTION\b"
+    return head.startswith("AutoCAD Binary DXF") or re.match(begin, head) is not None
+
+
+@dataclass
+class _Entity:
+    kind: str
+    line: int
+    codes: dict[int, list[str]] = field(default_factory=dict)
+
+    def all(self, code: int) -> list[str]:
+        return self.codes.get(code, [])
+
+    def one(self, code: int, default: str = "0") -> str:
+        return self.all(code)[0] if self.all(code) else default
+
+    @property
+    def layer(self) -> str:
+        return self.one(8, "").strip().lower()
+
+    @property
+    def is_on_sheet(self) -> bool:
+        """Whether it belongs to the printed sheet, not to the drawing."""
+        return self.one(67) == "1"
+
+    @property
+    def has_arcs(self) -> bool:
+        """Of a polyline or its corner: whether a piece is an arc, by its bulge."""
+        return any(bulge.strip("-+0.") for bulge in self.all(42))
+
+    @property
+    def is_mirrored(self) -> bool:
+        """Whether its plane is seen from behind: its coordinates would be mirrored."""
+        return self.one(230, "1").startswith("-")
+
+    @property
+    def is_closed(self) -> bool:
+        """Of a polyline: its flags are bits, of which the first says that it is closed."""
+        return self.one(70).isdecimal() and int(self.one(70)[-1]) % 2 == 1
+
+
+@dataclass
+class _Pin:
+    at: complex
+    radius: float
+    layers: set[str]
+    name: str = ""
+
+
+def read(source: Source) -> Assembly:
+    """Read the entities of a drawing."""
+    if source.data.startswith(b"AutoCAD Binary DXF"):
+        source.refuse("is a binary DXF file: save it as ASCII DXF")
+    units, entities = _entities(source)
+    assembly = Assembly(source)
+    assembly.length = _UNITS.get(units, "unit")
+    if units not in _UNITS:
+        source.leave_out("$INSUNITS", "unit of length: none is stated that is known")
+    pins = _pins(source, entities)
+    for k, pin in enumerate(pins):
+        pin.name = assembly.add_point(f"P{k + 1}", pin.at, bool(pin.layers & set(_GROUND_LAYERS)))
+        if pin.layers & set(_TRACE_LAYERS):
+            assembly.trace.append(pin.name)
+    driven = []
+    for entity, path, closed in _paths(source, entities):
+        own = _pins_of(path, closed, pins)
+        place = f"line {entity.line}"
+        if entity.kind == "LINE" and (len(own) < 2 or not {path[0], path[-1]} <= own.keys()):
+            source.leave_out(place, "line with an end at no circle")
+        elif len(own) < 2:
+            source.leave_out(place, "polyline with fewer than two circles at its corners")
+        elif entity.layer in _GROUND_LAYERS:
+            assembly.fixed.update(own.values())
+        else:
+            link = assembly.add_link(f"L{len(assembly.links) + 1}", own.values())
+            if entity.layer in _INPUT_LAYERS:
+                driven.append((place, link))
+    for place, link in driven:
+        # without a pivot at ground the drawing does not say against what it turns
+        pivots = [p for p in assembly.links[link] if p in assembly.fixed]
+        drive_joint(assembly, place, [GROUND, link] if pivots else [link])
+    if not driven:
+        source.leave_out("the drawing", 'the input: no line is on a layer "input"')
+    return assembly
+
+
+def _pairs(source: Source) -> Iterator[tuple[int, int, str]]:
+    """Line, group code and value of every pair."""
+    # old files have the code page of their country: only names could suffer
+    rows = source.data.decode("utf-8-sig", "replace").splitlines()
+    while rows and not rows[-1].strip():
+        rows.pop()
+    for k in range(0, len(rows) - 1, 2):
+        code = rows[k].strip()
+        if not re.fullmatch(r"-?\d{1,5}", code, re.ASCII):
+            source.refuse(f'expected a group code, got "{code[:20]}"', k + 1)
+        yield k + 1, int(code), rows[k + 1].strip()
+
+
+def _entities(source: Source) -> tuple[str, list[_Entity]]:
+    """The unit of the header, and the entities of the drawing, without those of blocks."""
+    section = variable = units = ""
+    found: list[_Entity] = []
+    wait = False
+    for line, code, value in _pairs(source):
+        if code == 0:
+            if value == "SECTION":
+                section, wait = "", True
+            elif value == "ENDSEC":
+                section = ""
+            elif section == "ENTITIES":
+                found.append(_Entity(value, line))
+        elif code == 2 and wait:
+            section, wait = value, False
+        elif section == "HEADER" and code == 9:
+            variable = value
+        elif section == "HEADER" and variable == "$INSUNITS" and code == 70:
+            units = value
+        elif section == "ENTITIES" and found:
+            found[-1].codes.setdefault(code, []).append(value)
+    if not found:
+        source.refuse("has no entities: a section ENTITIES with circles and lines is needed")
+    if len(found) > _MOST:
+        source.refuse(f"has more than {_MOST} entities")
+    for own in (own for own in found if own.is_on_sheet):
+        source.leave_out(f"line {own.line}", "entity of the sheet (paper space)")
+    return units, [own for own in found if not own.is_on_sheet]
+
+
+def _place(source: Source, entity: _Entity, x: str, y: str) -> complex:
+    what = f"a coordinate of {entity.kind[:20]}"
+    return complex(source.number(x, what, entity.line), source.number(y, what, entity.line))
+
+
+def _pins(source: Source, entities: list[_Entity]) -> list[_Pin]:
+    """The pins: concentric circles are one."""
+    pins: list[_Pin] = []
+    for entity in entities:
+        if entity.kind != "CIRCLE":
+            continue
+        if entity.is_mirrored:
+            source.leave_out(f"line {entity.line}", "circle seen from behind (extrusion)")
+            continue
+        at = _place(source, entity, entity.one(10, ""), entity.one(20, ""))
+        radius = source.number(entity.one(40, ""), "the radius", entity.line)
+        same = next((p for p in pins if abs(p.at - at) <= _TOLERANCE * max(radius, p.radius)), None)
+        if same is None:
+            if len(pins) == 400:
+                source.refuse("has more than 400 circles")
+            pins.append(_Pin(at, radius, {entity.layer}))
+        else:
+            same.radius = max(radius, same.radius)
+            same.layers.add(entity.layer)
+    return pins
+
+
+def _paths(
+    source: Source, entities: list[_Entity]
+) -> Iterator[tuple[_Entity, list[complex], bool]]:
+    """Lines and polylines with their corners, and whether they are closed."""
+    polyline: tuple[_Entity, list[complex]] | None = None
+    for entity in entities:
+        if entity.kind == "LINE":
+            ends = [
+                _place(source, entity, entity.one(x, ""), entity.one(x + 10, "")) for x in (10, 11)
+            ]
+            yield entity, ends, False
+        elif entity.kind in ("LWPOLYLINE", "POLYLINE") and entity.is_mirrored:
+            source.leave_out(f"line {entity.line}", "polyline seen from behind (extrusion)")
+        elif entity.kind == "LWPOLYLINE":
+            if entity.has_arcs:
+                source.leave_out(f"line {entity.line}", _ARCS)
+            xs, ys = entity.all(10), entity.all(20)
+            if len(xs) != len(ys):
+                source.refuse("a corner of the polyline lacks a coordinate", entity.line)
+            corners = [_place(source, entity, x, y) for x, y in zip(xs, ys, strict=True)]
+            yield entity, corners, entity.is_closed
+        elif entity.kind == "POLYLINE":
+            polyline = (entity, [])
+        elif entity.kind == "VERTEX" and polyline is not None:
+            if entity.has_arcs:
+                source.leave_out(f"line {entity.line}", _ARCS)
+            polyline[1].append(_place(source, entity, entity.one(10, ""), entity.one(20, "")))
+        elif entity.kind == "SEQEND" and polyline is not None:
+            yield *polyline, polyline[0].is_closed
+            polyline = None
+        elif entity.kind != "CIRCLE":
+            source.leave_out(f"line {entity.line}", f"entity {entity.kind[:20]}")
+
+
+def _pins_of(path: list[complex], closed: bool, pins: list[_Pin]) -> dict[complex, str]:
+    """The pins at the corners of a path and on its straight pieces, by their place on it."""
+    found: dict[complex, str] = {}
+    for k, corner in enumerate(path):
+        # lines may be drawn to the rim of a circle
+        nearest = min(pins, key=lambda pin: abs(pin.at - corner), default=None)
+        if nearest is not None and abs(nearest.at - corner) <= nearest.radius * (1.0 + _TOLERANCE):
+            found[corner] = nearest.name
+        if k + 1 < len(path) or closed:
+            end = path[(k + 1) % len(path)]
+            inside = (
+                sorted(
+                    (abs(pin.at - corner), pin.name, pin.at)
+                    for pin in pins
+                    if _is_on(pin, corner, end)
+                )
+                if end != corner and len(path) < 50
+                else []
+            )
+            for _, name, at in inside:
+                if name not in found.values():
+                    found[at] = name
+    return found
+
+
+def _is_on(pin: _Pin, a: complex, b: complex) -> bool:
+    """Whether a pin is inside a straight piece, away from its ends."""
+    local = (pin.at - a) / (b - a)
+    return abs(local.imag) <= _TOLERANCE and 1e-3 < local.real < 1.0 - 1e-3

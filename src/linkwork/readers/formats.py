@@ -1,0 +1,134 @@
+"""The formats of other programs, and which one a file has."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from types import ModuleType
+
+from linkwork.core.foundation.errors import InputError, UnknownNameError, choices
+from linkwork.core.mechanism.linkage import Linkage
+from linkwork.core.mechanism.part.index import PARTS
+from linkwork.readers import dxf, geogebra, linkage2, mjcf, pmks, pylinkage, pyslvs, urdf
+from linkwork.readers.assembly import Drawn, Exported, LeftOut, Source
+
+__all__ = ["FORMATS", "WRITERS", "Reading", "carried", "read_foreign", "write_foreign"]
+
+#: Modules by the name of their format; each has ``TITLE``, ``SUFFIXES``, ``matches`` and ``read``.
+FORMATS: Mapping[str, ModuleType] = {
+    "pmks": pmks,
+    "pylinkage": pylinkage,
+    "linkage2": linkage2,
+    "pyslvs": pyslvs,
+    "geogebra": geogebra,
+    "dxf": dxf,
+    "mjcf": mjcf,
+    "urdf": urdf,
+}
+#: Formats that are written as well.
+WRITERS = ("pmks", "pylinkage", "pyslvs")
+_HEAD = 4000
+#: Formats without a published description: what to do instead.
+_CLOSED = {
+    ".sam": "files of SAM (ARTAS) have no published format: export a DXF drawing from SAM and "
+    "import that",
+}
+
+
+@dataclass(frozen=True, kw_only=True)
+class Reading:
+    """A linkage of a file, its format, what was left out, and names that changed."""
+
+    linkage: Linkage
+    format: str
+    left_out: tuple[LeftOut, ...]
+    renamed: Mapping[str, str]
+
+    @property
+    def carried(self) -> dict[str, int]:
+        """The numbers of points, links, parts by their table, and inputs."""
+        return carried(self.linkage)
+
+
+def carried(linkage: Linkage) -> dict[str, int]:
+    """The numbers of points, links, parts by their table, and inputs, where there are any."""
+    tables = ("points", "links", *PARTS)
+    counts = {table: len(getattr(linkage, table)) for table in tables}
+    found = {what: count for what, count in counts.items() if count}
+    return found | {"inputs": len(linkage.inputs)}
+
+
+def read_foreign(data: bytes, name: str, wanted: str | None = None) -> Reading:
+    """Read the file of another program.
+
+    Parameters
+    ----------
+    data : bytes
+    name : str
+        Its name; the suffix tells the format, otherwise its beginning.
+    wanted : str, optional
+        A key of :data:`FORMATS`.
+
+    Raises
+    ------
+    MechanismFileError
+        With the reason and its place in the file.
+    UnknownNameError
+        If there is no such format.
+    """
+    source = Source(data, name)
+    chosen = _named(wanted) if wanted is not None else _recognized(source)
+    assembly = FORMATS[chosen].read(source)
+    assembly.name = assembly.name or Path(name).stem[:200]
+    linkage = assembly.finish()
+    return Reading(
+        linkage=linkage, format=chosen, left_out=source.left_out, renamed=assembly.renamed
+    )
+
+
+def _named(wanted: str) -> str:
+    if wanted not in FORMATS:
+        raise UnknownNameError(
+            f'there is no format "{wanted}" {choices("formats", FORMATS, wanted)}'
+        )
+    return wanted
+
+
+def _recognized(source: Source) -> str:
+    suffix = Path(source.name).suffix.lower() if len(source.name) < 300 else ""
+    if suffix in _CLOSED:
+        source.refuse(_CLOSED[suffix])
+    head = source.data[:_HEAD].decode("utf-8-sig", "replace")
+    # a suffix such as .json or .xml says little, and content can be damaged
+    by_suffix = [name for name, module in FORMATS.items() if suffix in module.SUFFIXES]
+    by_content = [name for name, module in FORMATS.items() if module.matches(head)]
+    found = [name for name in by_content if name in by_suffix] or by_content or by_suffix
+    if not found:
+        known = choices("formats", FORMATS)
+        source.refuse(
+            f"is in no known format: give it the right suffix, or name the format {known}"
+        )
+    return found[0]
+
+
+def write_foreign(linkage: Linkage, places: Mapping[str, complex], wanted: str) -> Exported:
+    """Write a linkage in a format of another program.
+
+    Parameters
+    ----------
+    linkage : Linkage
+    places : Mapping[str, complex]
+        The points in an assembled position.
+    wanted : str
+        One of :data:`WRITERS`.
+
+    Raises
+    ------
+    InputError
+        If the format is not written, or has no equivalent of a part.
+    """
+    if wanted not in WRITERS:
+        raise InputError(f'"{wanted}" is not written {choices("formats", WRITERS, wanted)}')
+    drawn = Drawn(linkage, places)
+    return Exported(text=FORMATS[wanted].write(drawn), left_out=drawn.left_out)

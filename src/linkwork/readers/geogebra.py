@@ -1,0 +1,331 @@
+"""GeoGebra constructions that are linkages: ``.ggb`` files, or the ``geogebra.xml`` in them.
+
+After the published XML format (geogebra.org/source/program/xml_format): a construction lists
+elements with computed coordinates, and the commands between them. Free points are fixed pivots,
+circles keep a distance, lines guide a point. Scripts in a file are never executed.
+"""
+
+from __future__ import annotations
+
+import io
+import re
+import zipfile
+import zlib
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from typing import Any
+
+from linkwork.core.foundation.names import GROUND
+from linkwork.core.mechanism.inputs import Input
+from linkwork.readers.assembly import LARGEST, Assembly, Source
+from linkwork.readers.robots import Element, xml_tree
+
+__all__ = ["SUFFIXES", "TITLE", "matches", "read"]
+
+TITLE, SUFFIXES = "GeoGebra construction", (".ggb",)
+_ENTRY = "geogebra.xml"
+_AXES = {"xAxis": 1 + 0j, "yAxis": 1j}
+_WORD = re.compile(r"[^\W\d]\w*")
+_BROKEN = (
+    zipfile.BadZipFile, zlib.error, EOFError, OSError, ValueError, RuntimeError, LookupError,
+)  # fmt: skip
+
+
+def matches(head: str) -> bool:
+    """Whether a text begins like this format."""
+    return head.startswith("PK") or re.search(r"<geogebra\b", head) is not None
+
+
+def read(source: Source) -> Assembly:
+    """Read a construction."""
+    data = _unpacked(source) if source.data.startswith(b"PK") else source.data
+    root = xml_tree(data, source, "geogebra")
+    construction = root.one("construction")
+    if construction is None:
+        source.refuse("has no <construction>", root.line)
+    return _Construction(source, construction).assembly
+
+
+def _unpacked(source: Source) -> bytes:
+    try:
+        with zipfile.ZipFile(io.BytesIO(source.data)) as packed:
+            if _ENTRY not in packed.namelist():
+                source.refuse(f"is a ZIP file without {_ENTRY}")
+            with packed.open(_ENTRY) as entry:
+                # the stated size may be wrong: what is read is bounded
+                data = entry.read(LARGEST + 1)
+    except _BROKEN as error:
+        source.refuse(f"is a damaged ZIP file: {str(error)[:80] or type(error).__name__}")
+    if len(data) > LARGEST:
+        source.refuse(f"unpacks to more than {LARGEST / 1e6:.0f} MB: more is not read")
+    return data
+
+
+@dataclass(frozen=True)
+class _Circle:
+    """A circle about a point with a constant radius."""
+
+    center: str
+
+
+@dataclass(frozen=True)
+class _Line:
+    """A line through two points, or through one in a direction that ground fixes."""
+
+    points: tuple[str, ...]
+    along: complex | None = None
+
+
+@dataclass
+class _Construction:
+    source: Source
+    root: Element
+    assembly: Assembly = field(init=False)
+    points: dict[str, str] = field(default_factory=dict)
+    shapes: dict[str, _Circle | _Line] = field(default_factory=dict)
+    numbers: dict[str, bool] = field(default_factory=dict)  # whether it has a slider
+
+    def __post_init__(self) -> None:
+        self.assembly = Assembly(self.source, self.root.get("title"))
+        self.assembly.length = "unit"
+        elements = {own.get("label"): own for own in self.root.all("element")}
+        made: set[str] = set()
+        for own in self.root.children:
+            if own.tag == "command":
+                # elements of commands follow them: a point without a command is free
+                made |= set(self._outputs(own))
+        for own in self.root.children:
+            if own.tag == "command":
+                self._command(own, elements)
+            elif own.tag == "expression":
+                made.add(own.get("label"))
+                self._expression(own, elements)
+            elif own.tag == "element":
+                self._element(own, made)
+        if not self.assembly.inputs:
+            self.source.leave_out("the construction", "the input: no point moves on a circle")
+
+    def _place(self, own: Element) -> str:
+        return f"line {own.line}"
+
+    def _outputs(self, own: Element) -> list[str]:
+        out = own.one("output")
+        return [] if out is None else [name for name in out.attributes.values() if name]
+
+    def _element(self, own: Element, made: set[str]) -> None:
+        """A free object; those of commands were made before."""
+        kind, label = own.get("type"), own.get("label")
+        for tag in ("ggbscript", "javascript"):
+            if own.one(tag) is not None:
+                self.source.leave_out(self._place(own), "script: nothing is executed")
+        trace = own.one("trace")
+        if trace is not None and trace.get("val") == "true" and label in self.points:
+            self.assembly.trace.append(self.points[label])
+        if label in made:
+            return
+        if kind == "point":
+            self._add_point(label, own, fixed=True)
+            if trace is not None and trace.get("val") == "true":
+                self.assembly.trace.append(self.points[label])
+        elif kind in ("numeric", "angle"):
+            self.numbers[label] = own.one("slider") is not None
+        else:
+            self.source.leave_out(self._place(own), f"element of type {kind[:20]}")
+
+    def _add_point(self, label: str, own: Element, fixed: bool = False) -> str:
+        coords = own.one("coords")
+        if coords is None:
+            self.source.refuse(f'point "{label[:40]}" has no coordinates', own.line)
+        if label in self.points:
+            self.source.refuse(f'two points are called "{label[:40]}"', own.line)
+        x, y, z = (self.source.number(coords.get(c, "1"), c, coords.line) for c in "xyz")
+        if abs(z) < 1e-200:
+            self.source.refuse(f'point "{label[:40]}" is at infinity', coords.line)
+        place = [self.source.number(c / z, "a coordinate", coords.line) for c in (x, y)]
+        self.points[label] = self.assembly.add_point(label, complex(*place), fixed)
+        return self.points[label]
+
+    def _expression(self, own: Element, elements: dict[str, Element]) -> None:
+        """A formula: constant points and numbers only."""
+        label, text = own.get("label"), own.get("exp")
+        element = elements.get(label)
+        constant = not any(word not in self.numbers for word in _WORD.findall(text))
+        if constant and element is not None and element.get("type") == "point":
+            self._add_point(label, element, fixed=True)
+        elif constant and element is not None:
+            self.numbers[label] = any(self.numbers[word] for word in _WORD.findall(text))
+        else:
+            self.source.leave_out(self._place(own), f'formula "{text[:40]}"')
+
+    def _command(self, own: Element, elements: dict[str, Element]) -> None:
+        name, outputs = own.get("name"), self._outputs(own)
+        given = own.one("input")
+        # a0, a1, … a10: the longer name is the later one
+        entries = [] if given is None else given.attributes.items()
+        inputs = [v for _, v in sorted(entries, key=lambda entry: (len(entry[0]), entry[0]))]
+        rule = _RULES.get(name)
+        if rule is None or (not outputs and name != "Locus"):
+            self.source.leave_out(self._place(own), f"command {name[:40]}")
+            return
+        why = rule(self, inputs, outputs, elements)
+        if why:
+            self.source.leave_out(self._place(own), f"command {name}: {why}")
+
+    def _common(self, *points: str) -> str | None:
+        """A link, or ground, that carries these points."""
+        return next(iter(self.assembly.carriers(*points)), None)
+
+    def _is_constant(self, text: str) -> bool:
+        """Whether a radius does not change: numbers, and segments on one link."""
+        for word in _WORD.findall(text):
+            shape = self.shapes.get(word)
+            if isinstance(shape, _Line) and len(shape.points) == 2:
+                if self._common(*shape.points) is None:
+                    return False
+            elif word not in self.numbers:
+                return False
+        return True
+
+    def _add_circle(self, given: list[str], out: list[str], _: Any) -> str:
+        if len(given) != 2 or given[0] not in self.points:
+            return "only a centre with a radius or a point is read"
+        center = self.points[given[0]]
+        through = self.points.get(given[1])
+        constant = (
+            self._is_constant(given[1]) if through is None else bool(self._common(center, through))
+        )
+        if not constant:
+            return "its radius varies"
+        self.shapes[out[0]] = _Circle(center)
+        return ""
+
+    def _add_segment(self, given: list[str], out: list[str], _: Any) -> str:
+        known = [self.points[name] for name in given if name in self.points]
+        if len(known) != 2 or len(given) != 2:
+            return "only two points are read"
+        self.shapes[out[0]] = _Line(tuple(known))
+        return ""
+
+    def _add_polygon(self, given: list[str], out: list[str], _: Any) -> str:
+        known = [self.points[name] for name in given if name in self.points]
+        if len(known) != len(given):
+            return "only points are read"
+        for name, a, b in zip(out[1:], known, [*known[1:], known[0]], strict=False):
+            self.shapes[name] = _Line((a, b))
+        return "" if self._common(*known) else "its points are on no common link: it is only drawn"
+
+    def _add_driven_point(
+        self, given: list[str], out: list[str], elements: dict[str, Element]
+    ) -> str:
+        """A point that a person drags on a circle or a line."""
+        shape = self._shape(given[0]) if len(given) == 1 else None
+        element = elements.get(out[0])
+        if shape is None or element is None:
+            return "only circles and lines are read"
+        if not isinstance(shape, _Circle) and self._carrier(shape) is None:
+            return "its line is on no link"
+        point = self._add_point(out[0], element)
+        link = self._keep(shape, point)
+        if isinstance(shape, _Circle):
+            on = next(
+                (name for name in self.assembly.carriers(shape.center) if name != link), GROUND
+            )
+            self._drive(link, on)
+            return ""
+        return "the input: a driven slide, whose range the file does not state"
+
+    def _add_intersect(self, given: list[str], out: list[str], elements: dict[str, Element]) -> str:
+        shapes = [self._shape(name) for name in given[:2]]
+        if len(shapes) < 2 or any(shape is None for shape in shapes):
+            return "only circles with constant radii and lines are read"
+        lines = [shape for shape in shapes if isinstance(shape, _Line)]
+        if any(self._carrier(line) is None for line in lines):
+            return "a line is on no link"
+        for label in out:
+            element = elements.get(label)
+            # an intersection that does not exist has an empty element
+            if element is None or not element.children:
+                continue
+            point = self._add_point(label, element)
+            for shape in shapes:
+                assert shape is not None
+                self._keep(shape, point)
+        return ""
+
+    def _add_rotate(self, given: list[str], out: list[str], elements: dict[str, Element]) -> str:
+        element = elements.get(out[0])
+        if (
+            len(given) != 3
+            or element is None
+            or given[0] not in self.points
+            or given[2] not in self.points
+        ):
+            return "only points about points are read"
+        turned, center = self.points[given[0]], self.points[given[2]]
+        on = self._common(turned, center)
+        words = [word for word in _WORD.findall(given[1].replace("°", "")) if word in self.numbers]
+        known = _WORD.sub("", given[1].replace("°", ""))
+        if on is None or (not words and _WORD.search(given[1].replace("°", ""))):
+            return "the distance from its centre or its angle varies"
+        point = self._add_point(out[0], element)
+        if any(self.numbers[word] for word in words):
+            link = self._keep(_Circle(center), point)
+            self._drive(link, on)
+        elif known is not None:
+            self.assembly.put_on(on, point)
+        return ""
+
+    def _add_midpoint(self, given: list[str], out: list[str], elements: dict[str, Element]) -> str:
+        shape = self.shapes.get(given[0]) if len(given) == 1 else None
+        ends = (
+            list(shape.points)
+            if isinstance(shape, _Line)
+            else [self.points.get(n, "") for n in given]
+        )
+        on = self._common(*ends) if len(ends) == 2 and all(ends) else None
+        if on is None or out[0] not in elements:
+            return "its points are on no common link"
+        self.assembly.put_on(on, self._add_point(out[0], elements[out[0]]))
+        return ""
+
+    def _add_locus(self, given: list[str], out: list[str], _: Any) -> str:
+        if given and given[0] in self.points:
+            self.assembly.trace.append(self.points[given[0]])
+            return ""
+        return "only loci of points are read"
+
+    def _shape(self, name: str) -> _Circle | _Line | None:
+        if name in _AXES and name not in self.shapes:
+            origin = self.assembly.add_point("origin", 0j, fixed=True)
+            second = self.assembly.add_point(name, _AXES[name], fixed=True)
+            self.shapes[name] = _Line((origin, second))
+        return self.shapes.get(name)
+
+    def _carrier(self, line: _Circle | _Line) -> str | None:
+        return self._common(*line.points) if isinstance(line, _Line) else None
+
+    def _keep(self, shape: _Circle | _Line, point: str) -> str:
+        """Keep a point on a circle by a bar, or on a line by a slot."""
+        if isinstance(shape, _Circle):
+            return self.assembly.add_link(f"{shape.center}{point}", (shape.center, point))
+        on = self._carrier(shape)
+        assert on is not None  # checked by the caller
+        return self.assembly.add_slot(f"s_{point}", point, on, (shape.points[0], shape.points[1]))
+
+    def _drive(self, link: str, on: str) -> None:
+        self.assembly.inputs.append(Input(link=link, relative_to=None if on == GROUND else on))
+
+
+_Rule = Callable[[_Construction, list[str], list[str], dict[str, Element]], str]
+_RULES: dict[str, _Rule] = {
+    "Circle": _Construction._add_circle,
+    "Segment": _Construction._add_segment,
+    "Line": _Construction._add_segment,
+    "Ray": _Construction._add_segment,
+    "Polygon": _Construction._add_polygon,
+    "Point": _Construction._add_driven_point,
+    "Intersect": _Construction._add_intersect,
+    "Rotate": _Construction._add_rotate,
+    "Midpoint": _Construction._add_midpoint,
+    "Locus": _Construction._add_locus,
+}

@@ -1,0 +1,213 @@
+"""Linkage by David Rector: XML with connectors, links and ratios, ``.linkage2``.
+
+After ``CLinkageDoc::ReadIn`` and ``WriteOut`` of the program's published source. Lengths are in
+1/96 inch, whatever unit the file says is shown.
+"""
+
+from __future__ import annotations
+
+import re
+
+from linkwork.core.foundation.names import GROUND
+from linkwork.core.foundation.units import LENGTHS
+from linkwork.core.mechanism.inputs import Input
+from linkwork.core.mechanism.part.index import PARTS
+from linkwork.readers.assembly import Assembly, Source, drive_joint
+from linkwork.readers.robots import Element, xml_tree
+
+__all__ = ["SUFFIXES", "TITLE", "matches", "read"]
+
+TITLE, SUFFIXES = "Linkage (Rector) XML", (".linkage2",)
+_DRAWING_LAYER = 1
+#: The unit of our file by the one that is shown.
+_UNITS = {
+    "Millimeters": "mm", "Centimeters": "cm", "Meters": "m", "Inches": "in", "Feet": "ft",
+}  # fmt: skip
+_SIDES = ("link", "Link", "element")
+
+
+def matches(head: str) -> bool:
+    """Whether a text begins like this format."""
+    return re.search(r"<linkage2\b", head) is not None
+
+
+def read(source: Source) -> Assembly:
+    """Read connectors and links."""
+    root = xml_tree(source.data, source, "linkage2")
+    return _Document(source, root).assembly
+
+
+class _Document:
+    def __init__(self, source: Source, root: Element) -> None:
+        self.source, self.assembly = source, Assembly(source)
+        program = root.one("program") or Element("program", {}, root.line)
+        shown = program.get("units", "Millimeters")
+        self.assembly.length = source.chosen(shown, _UNITS, f"line {program.line}")
+        self.scale = float(LENGTHS["in"] / LENGTHS[self.assembly.length] / 96)
+        if program.get("scalefactor", "1") != "1":
+            source.leave_out(f"line {program.line}", "factor of the lengths that are shown")
+        self.points: dict[str, str] = {}
+        self.links: dict[str, str] = {}
+        connectors = self._mechanical(root, "connector")
+        links = [own for own in root.children if own.tag in _SIDES and self._is_mechanical(own)]
+        for own in connectors:
+            self._add_connector(own)
+        for own in links:
+            self._add_link(own)
+        # links must be complete before gears are fastened and pins driven
+        for own in (*connectors, *links):
+            self._fasten(own)
+        for own in connectors:
+            self._drive_or_slide(own)
+        for ratios in root.all("ratios"):
+            for ratio in ratios.all("ratio"):
+                self._add_ratio(ratio)
+
+    def _is_mechanical(self, own: Element) -> bool:
+        layer = own.get("layer", "0")
+        number = int(layer) if layer.isascii() and layer.isdigit() and len(layer) < 12 else 0
+        if number & _DRAWING_LAYER:
+            self.source.leave_out(f"line {own.line}", f"drawing element <{own.tag}>")
+        return not number & _DRAWING_LAYER
+
+    def _mechanical(self, root: Element, tag: str) -> list[Element]:
+        return [own for own in root.all(tag) if self._is_mechanical(own)]
+
+    def _id(self, own: Element) -> str:
+        if not own.get("id"):
+            self.source.refuse(f"<{own.tag}> has no id", own.line)
+        return own.get("id")
+
+    def _length(self, own: Element, key: str, default: str = "") -> float:
+        return self.scale * self.source.number(own.get(key, default), key, own.line)
+
+    def _add_connector(self, own: Element) -> None:
+        key = self._id(own)
+        if key in self.points:
+            self.source.refuse(f'two connectors have the id "{key[:40]}"', own.line)
+        x, y = (self._length(own, c) for c in "xy")
+        point = self.assembly.add_point(
+            own.get("name") or f"P{key}", complex(x, y), own.get("anchor") == "true"
+        )
+        self.points[key] = point
+        if own.get("draw") == "true":
+            self.assembly.trace.append(point)
+        if own.get("drawcircle"):
+            self.source.leave_out(f"line {own.line}", "drawn circle")
+
+    def _add_link(self, own: Element) -> None:
+        key, place = self._id(own), f"line {own.line}"
+        if key in self.links:
+            self.source.refuse(f'two links have the id "{key[:40]}"', own.line)
+        points = []
+        for child in own.children:
+            if child.tag not in ("connector", "fastenconnector"):
+                continue
+            if child.get("id") not in self.points:
+                self.source.refuse(f'unknown connector "{child.get("id")[:40]}"', child.line)
+            points.append(self.points[child.get("id")])
+        if own.get("actuator") == "true" and len(points) == 2 and points[0] != points[1]:
+            self._add_actuator(own, points)
+            return
+        self.links[key] = self.assembly.add_link(own.get("name") or f"link{key}", points)
+        if own.get("actuator") == "true":
+            self.source.leave_out(place, "actuator with more than two connectors")
+
+    def _add_actuator(self, own: Element, points: list[str]) -> None:
+        wanted = own.get("name") or f"actuator{own.get('id')}"
+        name = self.assembly.add_part("cylinders", wanted, "actuator", between=tuple(points))
+        a, b = (self.assembly.points[point] for point in points)
+        throw = self._length(own, "throw", "0")
+        if throw > 0:
+            start = abs(b - a)
+            which = Input(cylinder=name, start=start, stop=start + throw, step=throw / 100.0)
+            self.assembly.inputs.append(which)
+        self.source.leave_out(f"line {own.line}", "strokes per minute of the actuator")
+
+    def _fasten(self, own: Element) -> None:
+        """A gear or connector that is fixed on a link."""
+        to = own.get("fastenlink") or (own.get("fasten") if own.tag == "connector" else "")
+        other = self.links.get(to)
+        if own.get("fastenconnector"):
+            self.source.leave_out(f"line {own.line}", "gear fastened to a connector")
+        if other is None:
+            return
+        if own.tag == "connector":
+            self.assembly.put_on(other, self.points[own.get("id")])
+        elif own.get("id") in self.links:
+            link = self.links[own.get("id")]
+            if self.assembly.carries(link) & self.assembly.carries(other):
+                self.assembly.parts["welds"].append(
+                    PARTS["welds"].of_table({"links": [other, link]})
+                )
+            else:
+                self.source.leave_out(
+                    f"line {own.line}", "fastened link without a common connector"
+                )
+
+    def _drive_or_slide(self, own: Element) -> None:
+        point, place = self.points[own.get("id")], f"line {own.line}"
+        if own.get("slider") == "true":
+            limits = [self.points.get(each.get("id")) for each in own.all("slidelimit")]
+            if own.get("slideradius") and self.source.number(
+                own.get("slideradius"), "slideradius", own.line
+            ):
+                self.source.leave_out(place, "slide on an arc")
+            elif len(limits) == 2 and limits[0] and limits[1] and limits[0] != limits[1]:
+                self._slide(place, point, (limits[0], limits[1]))
+            else:
+                self.source.leave_out(place, "slide without two limits")
+        if own.get("input") == "true":
+            # gears turn with what they are fastened to
+            pinned = [
+                n
+                for n in self.assembly.carriers(point)
+                if n == GROUND or len(self.assembly.links[n]) > 1
+            ]
+            # a gear alone on its pin can be driven too
+            pinned = pinned if len(pinned) == 2 else self.assembly.carriers(point)
+            rpm = own.get("rpm")
+            speed = f"{self.source.number(rpm, 'rpm', own.line)} rpm" if rpm else None
+            drive_joint(self.assembly, place, pinned, speed)
+
+    def _slide(self, place: str, point: str, line: tuple[str, str]) -> None:
+        on = [
+            name
+            for name in self.assembly.carriers(*line)
+            if point not in self.assembly.carries(name)
+        ]
+        if on:
+            self.assembly.add_slot(f"s_{point}", point, on[0], line)
+        else:
+            self.source.leave_out(place, "slide whose limits are on no other link")
+
+    def _add_ratio(self, own: Element) -> None:
+        place = f"line {own.line}"
+        ends = [(self.links.get(link.get("id")), link) for link in own.all("link")]
+        wheels = [name for name, _ in ends if name and self.assembly.links.get(name)]
+        if len(ends) != 2 or len(wheels) != 2 or wheels[0] == wheels[1]:
+            self.source.leave_out(place, "ratio without two wheels")
+            return
+        sizes = [self._length(link, "size") for _, link in ends]
+        centers = [self.assembly.links[wheel][0] for wheel in wheels]
+        arms = [name for name in self.assembly.carriers(*centers) if name not in wheels]
+        if not arms or min(sizes) <= 0 or centers[0] == centers[1]:
+            self.source.leave_out(place, "ratio of wheels whose centres are on no common link")
+            return
+        self._join(own, wheels, centers, arms[0], sizes)
+
+    def _join(
+        self, own: Element, wheels: list[str], centers: list[str], arm: str, sizes: list[float]
+    ) -> None:
+        pair = {"wheels": tuple(wheels), "centers": tuple(centers), "arm": arm}
+        if own.get("type") != "gears":
+            self.assembly.add_part("belts", "chain", "belt", **pair, radii=tuple(sizes))
+            if own.get("sizeassize") != "true":
+                self.source.leave_out(
+                    f"line {own.line}", "radii of the chain's wheels: the ratio is right"
+                )
+            return
+        a, b = (self.assembly.points[center] for center in centers)
+        # only the ratio of the sizes is meant, the wheels touch
+        radii = tuple(abs(b - a) * size / sum(sizes) for size in sizes)
+        self.assembly.add_part("gears", "mesh", "gear", **pair, radii=radii)

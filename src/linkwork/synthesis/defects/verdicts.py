@@ -1,0 +1,500 @@
+"""The defects of designs: what keeps a mechanism from doing its task."""
+
+from __future__ import annotations
+
+from abc import ABC, abstractmethod
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from enum import Enum
+from typing import Any
+
+import numpy as np
+
+from linkwork.core.foundation.arrays import Array, BoolArray
+from linkwork.core.foundation.errors import internal
+from linkwork.core.mechanism.description import Description
+from linkwork.core.results.listing.motion_listing import rounded_down
+from linkwork.core.results.quantities.rows import TRANSMISSION_ANGLE
+from linkwork.synthesis.defects.obstacles import meets_obstacle
+from linkwork.synthesis.loops.candidates import Candidates, Drive, LoopKind
+from linkwork.synthesis.loops.driven_loop import NOWHERE, Travel, driven_loops, travel_of
+from linkwork.synthesis.loops.limits import DrivenLoops
+from linkwork.synthesis.tasks.conditions import Wishes
+from linkwork.synthesis.tasks.task import Task
+
+
+class DefectKind(Enum):
+    """What is wrong with a design; the value is what a count of them says.
+
+    Examples
+    --------
+    >>> import linkwork as lw
+    >>> lw.DefectKind.CIRCUIT.value
+    'circuit changes'
+    """
+
+    CIRCUIT = "circuit changes"
+    BRANCH = "branch changes"
+    ORDER = "positions out of order"
+    RANGE = "driven range not reached"
+    TRANSMISSION = "transmission angle too small"
+    PIVOTS = "fixed pivot outside its region"
+    LENGTHS = "length out of bounds"
+    TOLERANCE = "tolerance exceeded"
+    OBSTACLE = "meets an obstacle"
+    BOUND = "bound of a goal broken"
+    UNMOVED = "nothing improved"
+    NOT_PROVED = "not proved"
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Verdicts:
+    """The verdicts on D designs with one driven link.
+
+    Parameters
+    ----------
+    loops : DrivenLoops
+    travel : Travel
+    transmission : (D,)
+        A lower bound of the transmission angle over the driven range [rad], 0 where rounding
+        decides about a dead point; NaN where the range is not defined.
+    size : (D,)
+        The longest link or distance of fixed pivots, of two guides also the longest arm [length].
+    shortest : (D,)
+        The shortest link [length].
+    arm : (D,)
+        The longest distance of the guided point from a moving pivot [length].
+    found : Mapping[DefectKind, (D,) bool]
+        Which designs have the defect. Others than circuit and branch are noted of designs on one
+        branch only, obstacles of those with at most one defect.
+    """
+
+    loops: DrivenLoops
+    travel: Travel
+    transmission: Array
+    size: Array
+    shortest: Array
+    arm: Array
+    found: dict[DefectKind, BoolArray]
+
+    @property
+    def sound(self) -> BoolArray:
+        """Designs without any defect, (D,)."""
+        return np.asarray(~np.any(list(self.found.values()), axis=0))
+
+
+def judge(given: Candidates, drive: Drive, wishes: Wishes) -> Verdicts:
+    """Decide every defect of designs by signs with bounds of their errors.
+
+    Parameters
+    ----------
+    given : Candidates
+    drive : Drive
+    wishes : Wishes
+        In radians and units of length.
+
+    Returns
+    -------
+    Verdicts
+
+    References
+    ----------
+    T. R. Chase, J. A. Mirth: Circuits and branches of single-degree-of-freedom planar linkages.
+    Journal of Mechanical Design 115 (1993) 223-230.
+    """
+    loops = driven_loops(given, drive)
+    travel = travel_of(loops, wishes.range, wishes.ordered, wishes.beyond)
+    found: dict[DefectKind, BoolArray] = {}
+    open_ = travel.decided.copy()
+    for kind, wrong in (
+        (DefectKind.CIRCUIT, travel.circuit != NOWHERE),
+        (DefectKind.BRANCH, travel.branch != NOWHERE),
+    ):
+        found[kind] = open_ & wrong
+        open_ &= ~wrong
+    found[DefectKind.ORDER] = open_ & travel.out_of_order
+    found[DefectKind.RANGE] = open_ & (travel.unreached != NOWHERE)
+    transmission = loops.least_transmission(travel.first, travel.last)
+    lengths = _lengths(given)
+    size, shortest = lengths.max(axis=1), lengths.min(axis=1)
+    found[DefectKind.TRANSMISSION] = open_ & ~(transmission >= wishes.transmission)
+    found[DefectKind.PIVOTS] = open_ & ~_pivots_inside(given, wishes)
+    arm = np.maximum(
+        np.abs(given.guided - given.moving_a)[:, 0], np.abs(given.guided - given.moving_b)[:, 0]
+    )
+    if not given.kind.has_crank:
+        # a rod between two guides may be short, and hold the guided point far away
+        size = np.maximum(size, arm)
+    found[DefectKind.LENGTHS] = open_ & ~(wishes.allows(shortest, size) & (arm <= wishes.longest))
+    found[DefectKind.TOLERANCE] = open_ & wishes.exceeds(given.guided, given.error).any(axis=1)
+    # a design with one other defect tells what that wish costs, if nothing else is wrong
+    nearly = open_ & ~found[DefectKind.RANGE] & (np.sum(list(found.values()), axis=0) <= 1)
+    met = np.zeros(len(given), dtype=bool)
+    if wishes.obstacles.size and nearly.any():
+        index = np.flatnonzero(nearly)
+        met[index] = meets_obstacle(given.take(index), drive, loops, travel, index, wishes)
+    found[DefectKind.OBSTACLE] = met
+    # a bound of zero leaves it open whether the range ends in front of a dead point
+    found[DefectKind.NOT_PROVED] = ~travel.decided | (
+        open_ & (transmission == 0.0) & ~found[DefectKind.RANGE]
+    )
+    return Verdicts(
+        loops=loops,
+        travel=travel,
+        # to rounding at a dead point: the least that any design has
+        transmission=np.where(open_, transmission, np.where(travel.decided, np.nan, 0.0)),
+        size=size,
+        shortest=shortest,
+        arm=arm,
+        found=found,
+    )
+
+
+def _lengths(given: Candidates) -> Array:
+    """The lengths of crank, coupler, and of a four-bar rocker and ground, (D, 2 to 4).
+
+    A coupler that slides in a block is as long as its farthest position needs.
+    """
+    if given.kind is LoopKind.RAPSON:
+        return np.asarray(np.abs(given.fixed_b[:, None] - given.moving_a).max(axis=1)[:, None])
+    if not given.kind.has_crank:
+        rod = np.abs(given.moving_b[:, 0] - given.moving_a[:, 0])
+        ground = np.abs(given.fixed_b - given.fixed_a)
+        return np.stack([rod, ground] if given.kind is LoopKind.OLDHAM else [rod], axis=1)
+    if given.kind is LoopKind.INVERTED:
+        reach = np.abs(given.fixed_b[:, None] - given.moving_a).max(axis=1)
+        ground = np.abs(given.fixed_b - given.fixed_a)
+        return np.stack([np.abs(given.moving_a[:, 0] - given.fixed_a), ground, reach], axis=1)
+    lengths = [given.moving_a[:, 0] - given.fixed_a, given.moving_b[:, 0] - given.moving_a[:, 0]]
+    if given.kind is LoopKind.FOUR_BAR:
+        lengths += [given.moving_b[:, 0] - given.fixed_b, given.fixed_b - given.fixed_a]
+    return np.abs(np.stack(lengths, axis=1))
+
+
+def _pivots_inside(given: Candidates, wishes: Wishes) -> BoolArray:
+    """Whether all fixed pivots are in the region or, to their errors, on its border."""
+    inside = np.ones(len(given), dtype=bool)
+    for name, pivot in (("A0", given.fixed_a), ("B0", given.fixed_b)):
+        if name in given.kind.pivots:
+            inside &= wishes.within_region(pivot, given.error)
+    return inside
+
+
+# ----------------------------------------------------------------------
+# Reasons in words for every defect of a design.
+
+
+@dataclass(frozen=True, kw_only=True)
+class Defect:
+    """A defect of a design.
+
+    Parameters
+    ----------
+    kind : DefectKind
+    between : (int, int), optional
+        The numbers of the positions between which it occurs.
+    message : str
+
+    Examples
+    --------
+    >>> import linkwork as lw
+    >>> bar = lw.example("four-bar")
+    >>> here, there = bar.solve(at=0).points["B"], bar.configurations(at=90)["crossed"].points["B"]
+    >>> found = lw.Task.path([here, there]).defects_of(bar, (0, 90), point="B")
+    >>> [defect.kind.name for defect in found]
+    ['CIRCUIT']
+    """
+
+    kind: DefectKind
+    between: tuple[int, int] | None
+    message: str
+
+
+def defects_of(
+    task: Task, given: Candidates, drive: Drive, verdicts: Verdicts, k: int
+) -> tuple[Defect, ...]:
+    """All defects of the k-th design, in the order of :class:`DefectKind`."""
+    words = _Words(task=task, given=given, drive=drive, verdicts=verdicts, k=k)
+    return tuple(words.defects())
+
+
+def tolerance_message(away: Array, reach: Array, unit: str) -> str:
+    """Which position is missed most beyond its tolerance; distances (N,) and tolerances (N,)."""
+    k = int((away - reach).argmax())
+    return f"position {k + 1} is missed by {away[k]:.4g} {unit}, tolerance {reach[k]:g} {unit}"
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class _Words:
+    task: Task
+    given: Candidates
+    drive: Drive
+    verdicts: Verdicts
+    k: int
+
+    def defects(self) -> Iterator[Defect]:
+        writers = {
+            DefectKind.CIRCUIT: self._circuit,
+            DefectKind.BRANCH: self._branch,
+            DefectKind.ORDER: self._order,
+            DefectKind.RANGE: self._range,
+            DefectKind.TRANSMISSION: self._transmission,
+            DefectKind.PIVOTS: self._pivots,
+            DefectKind.LENGTHS: self._lengths,
+            DefectKind.TOLERANCE: self._tolerance,
+            DefectKind.OBSTACLE: self._obstacle,
+            DefectKind.NOT_PROVED: self._not_proved,
+        }
+        for kind, found in self.verdicts.found.items():
+            if found[self.k]:
+                message, between = writers[kind]()
+                yield Defect(kind=kind, between=between, message=message)
+
+    def _circuit(self) -> tuple[str, tuple[int, int]]:
+        after = int(self.verdicts.travel.circuit[self.k]) + 1
+        return (
+            f"circuit changes between positions {after} and {after + 1}: the mechanism would have "
+            "to be taken apart",
+            (after, after + 1),
+        )
+
+    def _branch(self) -> tuple[str, tuple[int, int]]:
+        after = int(self.verdicts.travel.branch[self.k]) + 1
+        place = self.verdicts.travel.place[self.k, after - 1 : after + 1]
+        ends = self._dead_points()
+        nearest = min(ends, key=lambda end: float(np.abs(place - end).sum()))
+        return (
+            f"branch changes between positions {after} and {after + 1} at the dead point "
+            f"{self._input_text(nearest)}",
+            (after, after + 1),
+        )
+
+    def _order(self) -> tuple[str, None]:
+        order = np.argsort(self.verdicts.travel.place[self.k], kind="stable") + 1
+        return f"the input passes the positions in the order {', '.join(map(str, order))}", None
+
+    def _range(self) -> tuple[str, None]:
+        unreached, wanted = int(self.verdicts.travel.unreached[self.k]), self.task.wanted
+        if unreached < self.verdicts.travel.place.shape[1]:
+            return f"position {unreached + 1} is outside the driven range", None
+        if wanted.turns_fully and not self.drive.turns:
+            return "the driven slider cannot turn fully", None
+        if unreached > self.verdicts.travel.place.shape[1]:
+            return "an end of the function's range is outside the driven range", None
+        ends = " and ".join(map(self._input_text, filter(np.isfinite, self._dead_points())))
+        return f"the driven range passes a dead point: the branch ends at {ends}", None
+
+    def _transmission(self) -> tuple[str, None]:
+        unit = self.task.angle
+        least = rounded_down(unit.from_radians(float(self.verdicts.transmission[self.k])), 4)
+        wanted = self.task.wanted.transmission
+        return (
+            f"transmission angle down to {least:.4g}{unit.sign}, wanted {wanted:g}{unit.sign}",
+            None,
+        )
+
+    def _pivots(self) -> tuple[str, None]:
+        both = {"A0": self.given.fixed_a[self.k], "B0": self.given.fixed_b[self.k]}
+        pivots = {name: both[name] for name in self.given.kind.pivots}
+        places = " and ".join(f"{n} at ({z.real:.6g}, {z.imag:.6g})" for n, z in pivots.items())
+        return f"fixed pivots {places} are not all in their region", None
+
+    def _lengths(self) -> tuple[str, None]:
+        verdicts, k = self.verdicts, self.k
+        shortest, longest, arm = verdicts.shortest[k], verdicts.size[k], verdicts.arm[k]
+        if arm > self.task.wanted.longest:
+            return f"an arm of the coupler is {arm:.4g} long, which is out of bounds", None
+        return f"lengths from {shortest:.4g} to {longest:.4g} are out of bounds", None
+
+    def _tolerance(self) -> tuple[str, None]:
+        positions = self.task.positions
+        points = np.array([complex(*position.point) for position in positions])
+        reach = np.array([position.tolerance for position in positions])
+        away = np.abs(self.given.guided[self.k] - points)
+        return tolerance_message(away, reach, self.task.length), None
+
+    def _obstacle(self) -> tuple[str, None]:
+        return "a link meets an obstacle, or passes it too closely to exclude that", None
+
+    def _not_proved(self) -> tuple[str, None]:
+        loops, k = self.verdicts.loops, self.k
+        if not np.isfinite(self.given.error[k]):
+            return "not proved: the solution nearly coincides with another one", None
+        limits = min(abs(loops.upper[k]), abs(loops.lower[k]))
+        if not limits > loops.limit_error[k]:
+            return "not proved: to rounding, the lengths are those of a change point", None
+        sides = np.abs(loops.side[k])
+        if not sides.min() > loops.sign_error[k]:
+            return f"not proved: position {int(sides.argmin()) + 1} is at a dead point", None
+        if self.verdicts.transmission[k] == 0.0:
+            return "not proved: to rounding, the driven range touches a dead point", None
+        return "not proved: the order of the positions depends on rounding", None
+
+    def _dead_points(self) -> list[float]:
+        """The ends of the branch at the first position, as places."""
+        loops, k = self.verdicts.loops, self.k
+        q0, q1 = loops.q0[k], loops.q1[k]
+        if not loops.turns:
+            reach = [np.sqrt(max(limit - q0, 0.0)) for limit in (loops.low[k], loops.high[k])]
+            sign = np.sign(loops.half[k, 0])
+            ends = [sign * reach[0], sign * reach[1]]
+            return ends if loops.lower[k] > 0 else [-reach[1], reach[1]]
+        upper, lower = loops.upper[k] > 0, loops.lower[k] > 0
+        high = float(np.arccos(np.clip((loops.high[k] - q0) / q1, -1.0, 1.0)))
+        low = float(np.arccos(np.clip((loops.low[k] - q0) / q1, -1.0, 1.0)))
+        if upper and lower:
+            ends = [high, low]
+            return ends if loops.half[k, 0] > 0 else [2.0 * np.pi - end for end in ends]
+        return [high, 2.0 * np.pi - high] if upper else [-low, low]
+
+    def _input_text(self, place: float) -> str:
+        value = place + float(self.verdicts.loops.origin[self.k])
+        if not self.verdicts.loops.turns:
+            return f"{place:.6g} {self.task.length}"
+        unit = self.task.angle
+        return f"{unit.from_radians(float(np.mod(value, 2.0 * np.pi))):.4g}{unit.sign}"
+
+
+# ----------------------------------------------------------------------
+# One design of a synthesis with the verdict on it, whatever its kind.
+
+
+@internal("linkage", "kinds", "task")
+@dataclass(frozen=True, kw_only=True, eq=False)
+class JudgedDesign(ABC):
+    """A mechanism for a task, and what keeps it from doing it.
+
+    Parameters
+    ----------
+    task : Task
+    number : int
+        Its rank among the sound designs from 1, or its place among the refused ones.
+    delivered : bool
+        Whether it is sound and among the wanted number of designs.
+    score : float
+        The weighted score of the ranking, 0 to 1.
+
+    Examples
+    --------
+    >>> import linkwork as lw
+    >>> task = lw.Task.function("log10(x)", x=(1, 2), input=(45, 105), output=(0, 90))
+    >>> design = task.solve().delivered[0]
+    >>> isinstance(design, lw.JudgedDesign), design.number, design.driven
+    (True, 1, 'A0')
+    """
+
+    task: Task
+    number: int = 0
+    delivered: bool = False
+    score: float = np.nan
+
+    @property
+    @abstractmethod
+    def mechanism(self) -> str:
+        """The kind of mechanism, or the mechanism that was improved as the task names it."""
+
+    @property
+    @abstractmethod
+    def driven(self) -> str:
+        """The driven link in words, or the leading input."""
+
+    @property
+    @abstractmethod
+    def numbers(self) -> dict[str, float]:
+        """The numbers that vary [file units]; none where all of them are found."""
+
+    @property
+    def goals(self) -> dict[str, float]:
+        """The misses of goals [file units]; none where positions are met, or miss by the error."""
+        return {}
+
+    @property
+    @abstractmethod
+    def points(self) -> dict[str, complex]:
+        """The points at the first position [length]."""
+
+    @property
+    @abstractmethod
+    def inputs(self) -> tuple[float, ...]:
+        """The inputs at the positions [file units]."""
+
+    @property
+    @abstractmethod
+    def first_input(self) -> float:
+        """The input at the first position [file units]."""
+
+    @property
+    @abstractmethod
+    def linkage(self) -> Description:
+        """The mechanism, with the name of its design."""
+
+    @property
+    @abstractmethod
+    def transmission(self) -> float:
+        """The least transmission angle over the driven range, or a lower bound of it; NaN where
+        that is not defined [file's angle unit].
+        """
+
+    @property
+    @abstractmethod
+    def size(self) -> float:
+        """The longest link, or the largest distance of fixed pivots [length]."""
+
+    @property
+    @abstractmethod
+    def shortest(self) -> float:
+        """The shortest link, or distance of fixed pivots [length]."""
+
+    @property
+    @abstractmethod
+    def error(self) -> float:
+        """How far positions are missed, the largest distance; or the structural error."""
+
+    @property
+    @abstractmethod
+    def error_unit(self) -> str:
+        """The unit of the error."""
+
+    @property
+    @abstractmethod
+    def kinds(self) -> tuple[DefectKind, ...]:
+        """The kinds of its defects; none for a sound design."""
+
+    @property
+    @abstractmethod
+    def defects(self) -> tuple[Defect, ...]:
+        """Its defects in words; none for a sound design."""
+
+    @property
+    def _name(self) -> str:
+        refused = ", refused" if self.kinds else ""
+        return f"{self.task.name}, design {self.number}{refused}"
+
+    def _details(self) -> Mapping[str, Any]:
+        """Further plain data of a kind of designs."""
+        return {}
+
+    def to_dict(self, file: str | None = None) -> dict[str, Any]:
+        """Plain data, as in the command line's JSON."""
+        return {
+            "file": file,
+            "mechanism": self.mechanism,
+            "points": {name: [z.real, z.imag] for name, z in self.points.items()},
+            "drive": self.driven,
+            "inputs": list(self.inputs),
+            "delivered": self.delivered,
+            TRANSMISSION_ANGLE.word: self.transmission,
+            "size": self.size,
+            "shortest": self.shortest,
+            "error": self.error,
+            "score": self.score,
+            **self._details(),
+            "defects": [
+                {
+                    "kind": defect.kind.name.lower(),
+                    "between": None if defect.between is None else list(defect.between),
+                    "message": defect.message,
+                }
+                for defect in self.defects
+            ],
+        }

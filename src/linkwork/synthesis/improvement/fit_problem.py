@@ -1,0 +1,714 @@
+"""Several objectives of lanes as one sum of squares: weights, and limits of some of them.
+
+An objective f is the root mean square of the misses of one goal. A lane minimises the sum of w² f²
+over the objectives, eq. (169); a limit f ≤ e is a constraint with a multiplier, eq. (155). Weights
+reach the convex parts of a front only, limits reach every point of it.
+
+References
+----------
+Y. Y. Haimes, L. S. Lasdon, D. A. Wismer, On a bicriterion formulation of the problems of integrated
+system identification and system optimization, IEEE Transactions on Systems, Man, and Cybernetics 1
+(1971) 296-297.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
+from functools import cached_property
+
+import numpy as np
+
+from linkwork.core.foundation.arrays import Array, BoolArray, IndexArray
+from linkwork.core.foundation.errors import MechanismError, Problem
+from linkwork.core.foundation.loading import cores, share_out
+from linkwork.core.mechanism.varied_numbers import VariedNumber
+from linkwork.core.motion.model import Model
+from linkwork.core.motion.rows_between import between_rows
+from linkwork.core.results.motion import Motion
+from linkwork.synthesis.improvement.curves import own_inputs
+from linkwork.synthesis.improvement.exact_numbers import ExactNumbers
+from linkwork.synthesis.improvement.goals import Misses, PathGoal, goal_of
+from linkwork.synthesis.improvement.kept_relations import Together
+from linkwork.synthesis.improvement.lanes import DesignWriter, LaneWork, SolvedLanes, inputs_away
+from linkwork.synthesis.improvement.settings import Aid, Goal
+from linkwork.synthesis.lane_least_squares import Box, LaneFit, Residuals, minimise, starts_of
+
+_STIFF = 10.0  # weight of limits, in spans of their objectives: their shifts converge faster
+_MARGIN = 1e-9  # of an objective's scale: by which limits hold in the end
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Objectives:
+    """Which residuals are the misses of which goal.
+
+    Parameters
+    ----------
+    names : tuple of str
+    columns : tuple of slice, optional
+        Of the shared residuals; ``None``: the rows.
+    weights : (K,)
+        Of the goals, which the residuals contain.
+    bounds : sequence of slice
+        The shared residuals that are broken bounds.
+    """
+
+    names: tuple[str, ...]
+    columns: tuple[slice | None, ...]
+    weights: Array
+    bounds: tuple[slice, ...]
+
+    def misses(self, found: Residuals, k: int) -> tuple[Array, Array]:
+        """The misses of an objective, (D, n), and by the numbers, (D, n, P)."""
+        own = self.columns[k]
+        if own is not None:
+            return found.shared[:, own], found.shared_by_x[:, own]
+        count = len(found.rows)
+        return found.rows.reshape(count, -1), found.by_x.reshape(count, -1, found.by_x.shape[-1])
+
+    def count(self, found: Residuals, k: int) -> int:
+        """The number of misses of an objective; a distance from a point is one."""
+        own = self.columns[k]
+        return int(found.rows.shape[1] if own is None else own.stop - own.start)
+
+    def values(self, found: Residuals) -> Array:
+        """The objectives, (D, K), without the weights of their goals."""
+        values = [
+            np.linalg.norm(self.misses(found, k)[0], axis=1) / np.sqrt(self.count(found, k))
+            for k in range(len(self.names))
+        ]
+        # there may be bounds only
+        return np.array(values).reshape(len(values), len(found.shared)).T / self.weights
+
+    def broken(self, found: Residuals) -> Array:
+        """The largest residual of a bound, (D,)."""
+        every = [np.abs(found.shared[:, own]).max(axis=1, initial=0.0) for own in self.bounds]
+        return np.asarray(np.max([np.zeros(len(found.shared)), *every], axis=0))
+
+
+class TradeOff:
+    """The weights and limits of lanes.
+
+    Parameters
+    ----------
+    objectives : Objectives
+    scale : (K,)
+        Units of the objectives.
+    weights, limits : (L, K)
+        Of scaled objectives; infinite: no limit.
+
+    Attributes
+    ----------
+    stiffness : (L, K)
+        Further weights of broken limits.
+    """
+
+    def __init__(self, objectives: Objectives, scale: Array, weights: Array, limits: Array) -> None:
+        self.objectives, self.units = objectives, scale
+        self.scale = scale * objectives.weights
+        self.weights, self.limits = weights, limits
+        self.stiffness = np.ones_like(limits)
+        self._shift = np.zeros_like(limits)
+        self._new = np.zeros_like(limits)
+
+    @property
+    def has_limits(self) -> bool:
+        """Whether an objective of a lane is limited."""
+        return bool(np.isfinite(self.limits).any())
+
+    def applied(self, found: Residuals, lanes: IndexArray) -> Residuals:
+        """Weighted residuals of lanes, and those of broken limits after them."""
+        rows, by_x, by_t = found.rows, found.by_x, found.by_t
+        shared, shared_by_x = np.array(found.shared), np.array(found.shared_by_x)
+        broken, slopes = [], []
+        for k, own in enumerate(self.objectives.columns):
+            unit = self.scale[k] * np.sqrt(self.objectives.count(found, k))
+            misses, slope = self.objectives.misses(found, k)
+            value, rise = self._over(k, misses / unit, slope / unit, lanes)
+            broken.append(value)
+            slopes.append(rise)
+            # eq. (169)
+            factor = self.weights[lanes, k] / unit
+            if own is None:
+                rows, by_x = rows * factor[:, None, None], by_x * factor[:, None, None, None]
+                by_t = None if by_t is None else by_t * factor[:, None, None]
+            else:
+                shared[:, own] *= factor[:, None]
+                shared_by_x[:, own] *= factor[:, None, None]
+        return Residuals(
+            rows,
+            by_x,
+            by_t,
+            np.concatenate([shared, np.stack(broken, axis=1)], axis=1),
+            np.concatenate([shared_by_x, np.stack(slopes, axis=1)], axis=1),
+        )
+
+    def _over(self, k: int, misses: Array, slope: Array, lanes: IndexArray) -> tuple[Array, Array]:
+        """How far an objective is above its limit, (D,), and by the numbers, (D, P)."""
+        limit, shift = self.limits[lanes, k], self._shift[lanes, k]
+        value = np.linalg.norm(misses, axis=1)
+        with np.errstate(invalid="ignore"):
+            # eq. (155)
+            over = np.maximum(0.0, value - limit + _MARGIN + shift)
+        self._new[lanes, k] = np.nan_to_num(over)
+        unit = misses / np.where(value > 0.0, value, 1.0)[:, None]
+        rise = np.einsum("dn,dnp->dp", unit, slope)
+        active, stiff = (over > 0.0)[:, None], _STIFF * self.stiffness[lanes, k]
+        # no number where there is no position
+        return stiff * over, stiff[:, None] * np.where(active, rise, 0.0)
+
+    def update(self, lanes: IndexArray) -> None:
+        """New shifts for lanes that were evaluated."""
+        self._shift[lanes] = self._new[lanes]
+
+
+def told_apart(names: Sequence[str]) -> tuple[str, ...]:
+    """Names of which equal ones are numbered."""
+    return tuple(
+        name if name not in names[:k] else f"{name} ({1 + list(names[:k]).count(name)})"
+        for k, name in enumerate(names)
+    )
+
+
+# ----------------------------------------------------------------------
+# The largest miss, minimised as the limit of sums of growing powers.
+#
+# Least squares of residuals f |f|^(k-1) minimise the sum of |f|^(2k), eq. (158). Each power begins
+# at the solution of the one before. The largest of N misses is then above the least possible by a
+# factor N^(1/2k) at most.
+#
+# References
+# ----------
+# G. Pólya, Sur un algorithme toujours convergent pour obtenir les polynomes de meilleure
+# approximation de Tchebycheff, Comptes Rendus 157 (1913) 840-843.
+
+
+#: Powers k in their order.
+POWERS = (2, 4, 8, 16, 32, 64, 128, 256, 512)
+
+
+def largest_misses(found: Residuals, counted: BoolArray) -> Array:
+    """The largest distance or counted shared residual of lanes, (D,)."""
+    rows = np.sqrt(np.einsum("dnm,dnm->dn", found.rows, found.rows))
+    every = np.concatenate([rows, np.abs(found.shared[:, counted])], axis=1)
+    return np.asarray(every.max(axis=1, initial=0.0))
+
+
+@np.errstate(all="ignore")  # lanes without residuals stay without
+def powered(found: Residuals, power: int, largest: Array, counted: BoolArray) -> Residuals:
+    """Residuals of powers, relative to the largest miss (D,) at the begin of their round.
+
+    ``counted`` (K,): the shared residuals that are misses; the others, broken bounds, stay.
+    """
+    scale = largest[:, None]
+    size = np.sqrt(np.einsum("dnm,dnm->dn", found.rows, found.rows))
+    factor = (size / scale) ** (power - 1) / scale
+    unit = found.rows / np.where(size > 0.0, size, 1.0)[:, :, None]
+
+    def bent(slope: Array) -> Array:
+        # eq. (158): |f|^(k-1) (I + (k - 1) u uᵀ) df
+        along = np.einsum("dnm,dnm...->dn...", unit, slope)
+        turned = np.einsum("dnm,dn...->dnm...", unit, along)
+        whole = slope + (power - 1) * turned
+        return np.asarray(factor.reshape(*factor.shape, *[1] * (slope.ndim - 2)) * whole)
+
+    shared, by_x = found.shared / scale, found.shared_by_x / scale[:, :, None]
+    own = np.where(counted, np.abs(shared) ** (power - 1), 1.0)
+    slope = np.where(counted, power * own, 1.0)
+    return Residuals(
+        found.rows * factor[:, :, None],
+        bent(found.by_x),
+        None if found.by_t is None else bent(found.by_t),
+        shared * own,
+        by_x * slope[:, :, None],
+    )
+
+
+# ----------------------------------------------------------------------
+# Residuals of all goals of a mechanism, for lanes of designs on all cores.
+
+
+APPROACH = 4  # parts of the way from the mechanism to a start
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class FittedNumbers:
+    """D designs, one for each start that went to the end.
+
+    Parameters
+    ----------
+    x : (D, P)
+        The numbers, file units.
+    t : (D, N)
+        Leading inputs at the points [rad or length].
+    total, largest : (D,)
+        Weighted sums of squares of all misses, and the largest one that is no broken bound.
+    path : (D,)
+        Sums of squares of the distances from the points [length²].
+    names : tuple of str
+        Of the goals that are no bounds.
+    objectives : (D, K)
+        Root mean squares of the misses of each goal that is no bound, without its weight.
+    broken : (D,)
+        The largest weighted residual of a bound.
+    bounds : tuple of Goal
+        Those that a design has to keep.
+    beyond : (D, B, 2)
+        How far it is below and above them.
+    start : (D,)
+        The numbers of their starts.
+    interrupted : bool
+    """
+
+    x: Array
+    t: Array
+    total: Array
+    largest: Array
+    path: Array
+    names: tuple[str, ...]
+    objectives: Array
+    broken: Array
+    bounds: tuple[Goal, ...]
+    beyond: Array
+    start: IndexArray
+    interrupted: bool
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Fitting:
+    """What is fitted.
+
+    Parameters
+    ----------
+    model, motion : Model, Motion
+        The mechanism as it is.
+    numbers : sequence of VariedNumber
+        Those that vary.
+    box : Box
+        Their bounds.
+    path : PathGoal, optional
+    goals : sequence of Goal
+    together : Together, optional
+        Numbers that change together: their sizes are fitted, and ``box`` is theirs.
+    """
+
+    model: Model
+    motion: Motion
+    numbers: Sequence[VariedNumber]
+    box: Box
+    path: PathGoal | None
+    goals: Sequence[Goal]
+    together: Together | None = None
+
+    def all_numbers(self, x: Array) -> Array:
+        """The numbers (D, P) of what is fitted, (D, G)."""
+        return x if self.together is None else self.together.numbers(x)
+
+
+class FitProblem:
+    """Residuals of all goals, for lanes of designs.
+
+    Parameters
+    ----------
+    given : Fitting
+    lanes : int
+
+    Attributes
+    ----------
+    power : int
+        Of the misses, for the largest one, see :mod:`~linkwork.synthesis.improvement.fit_problem`.
+    trade : TradeOff, optional
+        Weights and limits of objectives; ``None``: the sum of all.
+    moved, missed : (K,)
+        How much numbers change each goal, and how far it is missed, as far as is known; else NaN.
+    """
+
+    def __init__(self, given: Fitting, lanes: int) -> None:
+        self.given, model, motion, path = given, given.model, given.motion, given.path
+        self.model, self.motion = model, motion
+        self.box, self.path, self.lanes = given.box, path, lanes
+        self.numbers = np.array([float(q.of(model.description)) for q in given.numbers])
+        self.x = self.numbers if given.together is None else given.together.sizes
+        lead = next(iter(motion.inputs))
+        scale = float(model.input_scale[0])
+        # limits between the rows of the table move with the numbers
+        table = (np.asarray(motion.inputs[lead]) * scale)[motion.asked]
+        there = np.asarray(motion.found[motion.asked])
+        self.own_variables = own_inputs(path, model, table)
+        self.writer = DesignWriter(model, given.numbers)
+        self.goals = [goal_of(model, goal, table, there, scale) for goal in given.goals]
+        self.points = None if path is None else self._rows(path.inputs)
+        # goals of the same rows share their positions
+        self.rows: dict[bytes, SolvedLanes] = {}
+        for misses in self.goals:
+            if misses.at.tobytes() not in self.rows:
+                self.rows[misses.at.tobytes()] = self._rows(misses.at)
+        own = given.numbers, self.goals, self.rows
+        self.exact = ExactNumbers(self.writer, *own, there, lanes)
+        self.shifts = [np.zeros((2, lanes, misses.count)) for misses in self.goals]
+        self.new_shifts = [np.zeros_like(shift) for shift in self.shifts]
+        self.power, self.largest = 1, np.ones(lanes)
+        self.trade: TradeOff | None = None
+        # of the shared residuals, those that are no bounds
+        self.counted = np.concatenate(
+            [np.zeros(0, bool), *(np.full(m.count, not m.is_bound) for m in self.goals)]
+        )
+        self.work = LaneWork(sum(len(solved.rows_at) for solved in self._solvers))
+        self._reached = np.zeros(lanes, dtype=bool)
+        self.moved, self.missed = np.full((2, len(self.goals)), np.nan)
+
+    @property
+    def has_bounds(self) -> bool:
+        """Whether a goal is a bound, or an objective has a limit."""
+        limited = self.trade is not None and self.trade.has_limits
+        return limited or any(misses.is_bound for misses in self.goals)
+
+    @cached_property
+    def objectives(self) -> Objectives:
+        """The goals that are no bounds, the path first."""
+        names: list[str] = [] if self.path is None else [self.path.point]
+        columns: list[slice | None] = [] if self.path is None else [None]
+        weights, bounds, first = [1.0] * len(names), [], 0
+        for misses in self.goals:
+            own = slice(first, first + misses.count)
+            first = own.stop
+            if misses.is_bound:
+                bounds.append(own)
+                continue
+            names.append(misses.goal.of)
+            columns.append(own)
+            weights.append(misses.goal.weight)
+        return Objectives(
+            names=told_apart(names),
+            columns=tuple(columns),
+            weights=np.array(weights),
+            bounds=tuple(bounds),
+        )
+
+    @property
+    def _kept(self) -> list[tuple[Misses, slice]]:
+        """The bounds that a design has to keep, and their residuals."""
+        bounds = [misses for misses in self.goals if misses.is_bound]
+        pairs = zip(bounds, self.objectives.bounds, strict=True)
+        return [pair for pair in pairs if not isinstance(pair[0].goal, Aid)]
+
+    def copy_lanes(self, fit: LaneFit, of: IndexArray, to: IndexArray) -> None:
+        """Begin lanes where others are now."""
+        for name in ("x", "t", "total"):
+            getattr(fit, name)[to] = getattr(fit, name)[of]
+        for solved in self._solvers:
+            solved.copy_lanes(of, to)
+        self.exact.errors[:, to] = self.exact.errors[:, of]
+        self._reached[to] = True
+
+    def _rows(self, at: Array) -> SolvedLanes:
+        """Lanes at inputs, begun between or at the nearest rows of the mechanism's motion."""
+        away = inputs_away(at, self.motion, self.model)
+        q = self.motion.q[away.argmin(axis=1)]
+        far = away.min(axis=1) > 0.0
+        if far.any() and self.motion.found.all():
+            between = between_rows(self.model, self.motion)(at[far]).columns[0][:, : q.shape[1]]
+            q[far] = np.where(np.isfinite(between), between, q[far])
+        return SolvedLanes(self.writer, self.numbers, q, at, self.lanes)
+
+    @property
+    def _solvers(self) -> list[SolvedLanes]:
+        return [*([self.points] if self.points is not None else []), *self.rows.values()]
+
+    def begun(self, starts: Array) -> LaneFit:
+        """The starts, which are reached from the mechanism when their lanes are first worked on."""
+        own = 0 if self.path is None or self.path.timed else len(self.path.places)
+        inputs = self.path.inputs[:own] if self.path else np.zeros(0)
+        return starts_of(starts, np.array(np.broadcast_to(inputs, (len(starts), own))))
+
+    def reached(self, fit: LaneFit, lanes: IndexArray) -> LaneFit:
+        """Starts reached from the mechanism, with their sums; infinite where lost."""
+        every = fit.take(np.arange(len(fit)))
+
+        def work(own: IndexArray, count: Callable[[], None]) -> None:
+            every.total[own] = self._reach(fit.take(own), own, count)
+
+        self.work.share(lanes, APPROACH, work)
+        return replace(every, interrupted=self.work.stopped)
+
+    def _reach(self, fit: LaneFit, lanes: IndexArray, count: Callable[[], None]) -> Array:
+        """The sums of starts that are reached in some steps."""
+        begin = np.broadcast_to(self.x, fit.x.shape)
+        total = self._lead(begin, fit.x, fit.t, lanes, count)
+        self._reached[lanes] = True
+        return total
+
+    def move(self, fit: LaneFit, lanes: IndexArray, x: Array) -> None:
+        """Lanes that were at a design of another lane, led to other numbers (D, P)."""
+        self._lead(fit.x[lanes], x, fit.t[lanes], lanes)
+        fit.x[lanes] = x
+
+    def _lead(
+        self,
+        begin: Array,
+        end: Array,
+        t: Array,
+        lanes: IndexArray,
+        count: Callable[[], None] = lambda: None,
+    ) -> Array:
+        """From numbers to others in some steps, so that positions follow; the sums there."""
+        total = np.zeros(0)
+        for part in range(1, APPROACH + 1):
+            count()
+            for solved in self._solvers:
+                solved.total[lanes] = np.inf
+            total = self.evaluate(begin + (end - begin) * (part / APPROACH), t, lanes).total
+        return total
+
+    def further(self, fit: LaneFit, keep: IndexArray, steps: int) -> LaneFit:
+        """Some lanes after more steps."""
+        found: list[tuple[IndexArray, LaneFit]] = []
+
+        def work(own: IndexArray, count: Callable[[], None]) -> None:
+            start = fit.take(own)
+            if not self._reached[own].all():
+                start = replace(start, total=self._reach(start, own, count))
+                found.append((own, start))
+            for solved in self._solvers:
+                # sums of an earlier round are no measure of this one
+                solved.total[own] = np.inf
+            if self.power > 1:
+                now = self.evaluate(start.x, start.t, own, power=1)
+                self.largest[own] = np.maximum(largest_misses(now, self.counted), 1e-300)
+
+            def evaluate(x: Array, t: Array, lanes: IndexArray) -> Residuals:
+                count()
+                return self.evaluate(x, t, own[lanes])
+
+            after = minimise(evaluate, start, self.box, steps, own=self.own_variables)
+            found.append((own, after))
+            if after.interrupted:
+                raise KeyboardInterrupt
+            if self.has_bounds:
+                self.evaluate(after.x, after.t, own)
+                for shift, new in zip(self.shifts, self.new_shifts, strict=True):
+                    shift[:, own] = new[:, own]
+                if self.trade is not None:
+                    self.trade.update(own)
+
+        self.work.share(keep, steps, work)
+        every = fit.take(np.arange(len(fit)))
+        for own, after in found:
+            every.put(own, after)
+        return replace(every, interrupted=self.work.stopped)
+
+    def evaluate(
+        self, x: Array, t: Array, lanes: IndexArray, power: int | None = None
+    ) -> Residuals:
+        """All misses of designs (D, P); NaN for those of other equations."""
+        power = power or self.power
+        x = self.given.all_numbers(x)
+        count, parameters = x.shape
+        rows, by_x = np.zeros((count, 0, 2)), np.zeros((count, 0, 2, parameters))
+        by_t: Array | None = None
+        kept = []
+        designs = self.writer.written(x)
+        if self.path is not None and self.points is not None:
+            at = np.broadcast_to(self.path.inputs, (count, len(self.path.places)))
+            at = at if self.path.timed else t
+            found = self.points.at(designs, at, lanes)
+            rows, by_x, slope = self.path.misses(found)
+            by_t = None if self.path.timed else slope
+            kept.append((self.points, found, at))
+        positions = {}
+        for key, solved in self.rows.items():
+            at = np.broadcast_to(solved.rows_at, (count, len(solved.rows_at)))
+            positions[key] = solved.at(designs, at, lanes)
+            kept.append((solved, positions[key], at))
+        shared, shared_by_x = [np.zeros((count, 0))], [np.zeros((count, 0, parameters))]
+        for k, misses in enumerate(self.goals):
+            given = self.exact.errors[k, lanes], self.shifts[k][:, lanes]
+            own, slopes, new = misses.of(positions[misses.at.tobytes()], *given)
+            self.new_shifts[k][:, lanes] = new
+            if not self.moved[k] > 0.0 and (there := np.isfinite(own)).any():
+                self.moved[k] = float(np.abs(slopes[there]).max())
+                self.missed[k] = float(np.abs(own[there]).max())
+            shared.append(own)
+            shared_by_x.append(slopes)
+        slopes = np.concatenate(shared_by_x, axis=1)
+        if self.given.together is not None:
+            by_x, slopes = (own @ self.given.together.slopes for own in (by_x, slopes))
+        result = Residuals(rows, by_x, by_t, np.concatenate(shared, axis=1), slopes)
+        if self.trade is not None:
+            result = self.trade.applied(result, lanes)
+        if power > 1:
+            result = powered(result, power, self.largest[lanes], self.counted)
+        for solver, found, at in kept:
+            solver.keep(found, x, at, lanes, result.total)
+        return result
+
+    def correct(self, fit: LaneFit, lanes: IndexArray) -> IndexArray:
+        """Make goals of numbers of the motion exact; the lanes in which they were not."""
+        known = lanes[np.isfinite(fit.total[lanes])]
+        parts = self.work.parts(known) if len(known) else []
+        return self.exact.correct(self.given.all_numbers(fit.x), parts)
+
+    def measured(self, fit: LaneFit, lanes: IndexArray) -> Residuals:
+        """The misses of lanes without powers, weights and shifts."""
+        kept = self.power, self.trade, self.shifts
+        self.power, self.trade = 1, None
+        self.shifts = [np.zeros_like(shift) for shift in self.shifts]
+        for solved in self._solvers:
+            solved.total[lanes] = np.inf
+        parts = self.work.parts(lanes)
+        found: dict[int, Residuals] = {}
+
+        def measure(k: int) -> None:
+            found[k] = self.evaluate(fit.x[parts[k]], fit.t[parts[k]], parts[k])
+
+        share_out(measure, range(len(parts)), cores())
+        self.power, self.trade, self.shifts = kept
+        return Residuals.joined([found[k] for k in range(len(parts))])
+
+    def result(self, fit: LaneFit, most: int | None = None) -> FittedNumbers:
+        """All lanes that are known, or the best ones, with their misses."""
+        known = np.argsort(fit.total, kind="stable")[: max(1, np.isfinite(fit.total).sum())]
+        known = np.sort(known[:most])
+        self.correct(fit, known)
+        there = self.measured(fit, known)
+        beyond = [misses.beyond(there.shared[:, own]) for misses, own in self._kept]
+        fit = fit.take(known)
+        timed = self.path is None or self.path.timed
+        t = fit.t
+        if timed and self.path is not None:
+            t = np.array(np.broadcast_to(self.path.inputs, (len(fit), len(self.path.places))))
+        return FittedNumbers(
+            x=self.given.all_numbers(fit.x),
+            t=t,
+            total=np.where(np.isfinite(fit.total), there.total, np.inf),
+            largest=largest_misses(there, self.counted),
+            path=np.asarray(np.einsum("dnm,dnm->d", there.rows, there.rows)),
+            names=self.objectives.names,
+            objectives=self.objectives.values(there),
+            broken=self.objectives.broken(there),
+            bounds=tuple(misses.goal for misses, _ in self._kept),
+            beyond=np.reshape(beyond, (len(self._kept), len(known), 2)).swapaxes(0, 1),
+            start=known,
+            interrupted=fit.interrupted,
+        )
+
+
+# ----------------------------------------------------------------------
+# Whether the numbers that vary change the goals of an improvement at all.
+
+
+_PROBES, _PROBED = 4, 0.05  # designs that are drawn in this part of the bounds
+
+
+def check_moved(problem: FitProblem) -> None:
+    """Refuse goals that are missed, and that no number changes at any design so far, nor at some
+    that are drawn.
+
+    Raises
+    ------
+    MechanismError
+    """
+    unmoved = _unmoved(problem)
+    if unmoved:
+        probe, width = FitProblem(problem.given, _PROBES), problem.box.most - problem.box.least
+        draws = np.random.default_rng(0).uniform(-1.0, 1.0, (_PROBES, len(problem.x)))
+        x = problem.box.inside(problem.x + _PROBED * width * draws)
+        probe.reached(probe.begun(x), np.arange(_PROBES))
+        unmoved &= _unmoved(probe)
+    told = "changes with no number that varies, at any start: vary numbers that it depends on, or"
+    found = [
+        Problem(
+            key=("goals", k, "of"),
+            message=f'"{problem.goals[k].goal.of}" {told} leave this goal out',
+        )
+        for k in sorted(unmoved)
+    ]
+    if found:
+        raise MechanismError(found, "the improvement")
+
+
+def _unmoved(problem: FitProblem) -> set[int]:
+    """Goals that are missed and that no number has changed; none that was nowhere known."""
+    still = (problem.moved == 0.0) & (problem.missed > 0.0)
+    return {int(k) for k in np.flatnonzero(still) if not problem.goals[k].is_bound}
+
+
+# ----------------------------------------------------------------------
+# The numbers of any mechanism that meet goals best, from many starts in lanes on all cores.
+
+
+_STEPS = (60, 200, 200)  # of all lanes, then of the better half
+_BOUND_STEPS = (60,) * 7  # the same; after each the shifts of bounds change
+_POWER_STEPS = 60
+_CORRECTIONS, _CORRECTION_STEPS = 14, 20
+_ALL = 64  # so few lanes all go on, and are left of an interrupted fit
+
+
+def fit_numbers(
+    given: Fitting,
+    starts: Array,
+    *,
+    minimax: bool = False,
+    progress: Callable[[float], None] | None = None,
+) -> FittedNumbers:
+    """Improve starts (D, P).
+
+    ``minimax``: the largest miss counts, instead of the sum of squares.
+
+    Raises
+    ------
+    UnknownNameError, InputError
+        For goals that are not known, or whose derivatives are not known.
+    """
+    problem = FitProblem(given, len(starts))
+    rounds = [(1, steps) for steps in (_BOUND_STEPS if problem.has_bounds else _STEPS)]
+    rounds += [(power, _POWER_STEPS) for power in (POWERS if minimax else ())]
+    problem.work.tell, problem.work.whole = progress, sum(steps for _, steps in rounds)
+    fit = problem.begun(starts)
+    for k, (power, steps) in enumerate(rounds):
+        problem.power = power
+        # sums of other powers and shifts say nothing of this round
+        changed = power > 1 or problem.has_bounds
+        left = np.flatnonzero(np.isfinite(fit.total) if k and changed else ~fit.done | (k == 0))
+        # of many lanes only the better half goes on
+        most = len(starts) if len(starts) <= _ALL or not k else len(starts) // 2
+        keep = left[np.argsort(fit.total[left], kind="stable")[:most]]
+        if not len(keep):
+            continue
+        fit = problem.further(fit, keep, steps)
+        if fit.interrupted:
+            break
+        check_moved(problem)
+    left = np.arange(len(starts))
+    for _ in range(0 if fit.interrupted else _CORRECTIONS):
+        try:
+            left = problem.correct(fit, left)
+        except KeyboardInterrupt:
+            fit = replace(fit, interrupted=True)
+        if not len(left) or fit.interrupted:
+            break
+        fit = problem.further(fit, left, _CORRECTION_STEPS)
+    return problem.result(fit, _ALL if fit.interrupted else None)
+
+
+def path_misses(
+    model: Model, motion: Motion, numbers: Sequence[VariedNumber], path: PathGoal, x: Array
+) -> Array:
+    """The distances of one mechanism from timed points, (N,), reached from the nearest rows of its
+    motion; NaN where it has no position on their branch.
+    """
+    away = inputs_away(path.inputs, motion, model)
+    writer = DesignWriter(model, numbers)
+    solved = SolvedLanes(writer, x, motion.q[away.argmin(axis=1)], path.inputs, 1)
+    found = solved.at(writer.written(x[None]), path.inputs[None], np.zeros(1, dtype=int))
+    place = found.rows.place(path.point).v
+    value = found.values([place.real, place.imag])[0][0]
+    return np.asarray(np.abs(value[:, 0] + 1j * value[:, 1] - path.places))
+
+
+def misses_before(given: Fitting, *, minimax: bool) -> float:
+    """What a fit makes small, of the mechanism as it is; infinite if it breaks a bound."""
+    problem = FitProblem(given, 1)
+    now = problem.result(problem.reached(problem.begun(problem.x[None]), np.arange(1)))
+    kept = now.broken[0] == 0.0 and not now.beyond.any()
+    return float((now.largest if minimax else now.total)[0]) if kept else np.inf

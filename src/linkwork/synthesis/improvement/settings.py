@@ -1,0 +1,316 @@
+"""What is asked of a whole motion: the least transmission angle, and contact with circles."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, field, fields
+from typing import Any, Protocol
+
+import numpy as np
+
+from linkwork.core.foundation.arrays import Array
+from linkwork.core.foundation.errors import MechanismError, Problem, choices
+from linkwork.core.foundation.values import as_told, plain_number
+from linkwork.core.mechanism.skeleton import Dyad
+from linkwork.core.results.motion import Motion
+from linkwork.core.results.quantities.rows import TRANSMISSION_ANGLE
+
+#: Below this least transmission angle a design is at a dead point, for all that play allows.
+_DEAD = math.radians(0.1)
+_LOOKED_AT = math.radians(5.0)  # least angles of rows, between which a smaller one may be
+
+
+@dataclass(frozen=True, kw_only=True)
+class LeastAngle:
+    """The least angle is between ``low`` and ``high`` [rad], the angle at the input ``at``."""
+
+    low: float
+    high: float
+    at: float
+
+
+@dataclass(frozen=True, kw_only=True)
+class Contact:
+    """``met``: the side in a circle and the input there, if one is found; ``open``: the interval
+    of the input in which contact is not excluded.
+    """
+
+    met: tuple[int, float] | None
+    open: tuple[float, float] | None
+
+
+class MotionBounds(Protocol):
+    """A motion that is proved between its rows, too; inputs in file units."""
+
+    @property
+    def dyads(self) -> tuple[Dyad, ...]:
+        """The dyads with a transmission angle, one for each pin."""
+
+    def least_transmission(self, wanted: float) -> LeastAngle:
+        """The least transmission angle of all dyads, of which there is at least one, folded to 0 to
+        a quarter of a turn; ``wanted``: decide whether it is smaller than this [rad].
+        """
+
+    def contact(self, sides: Sequence[tuple[str, str]], circles: Array) -> Contact:
+        """Whether sides between two points of a link come into circles.
+
+        Parameters
+        ----------
+        sides : sequence of (str, str)
+        circles : (M, 3)
+            x, y, radius [length].
+        """
+
+
+def least_in_rows(motion: Motion) -> float:
+    """The least transmission angle of all dyads in the rows that have a position, NaN without one
+    [file's angle unit].
+    """
+    half = motion.units.angle.turn / 2.0
+    names = [n for n, a in motion.quantities.derived.items() if a.row is TRANSMISSION_ANGLE]
+    # 40° and 140° transmit equally well
+    rows = [np.minimum(own, half - own) for own in (motion[n][motion.found] for n in names)]
+    return min((float(own.min()) for own in rows if len(own)), default=float("nan"))
+
+
+def nearly_dead(motion: Motion, whole: MotionBounds | None) -> str:
+    """That a motion all but reaches a dead point, in words; "" if its transmission angles are not
+    that small.
+    """
+    unit = motion.units.angle
+    least, place = least_in_rows(motion) * unit.radians, ""
+    if whole is not None and whole.dyads and least < _LOOKED_AT:
+        found = whole.least_transmission(_DEAD)
+        lead = motion.quantities.names.lead
+        # where smaller angles are not excluded, they count
+        least, place = found.low, f" near {lead} = {found.at:.6g} {motion.input_units[lead]}"
+        least = found.high if found.high < _DEAD else least
+    if not least < _DEAD:
+        return ""
+    shown = f"{unit.from_radians(least):.2g}{unit.sign}"
+    told = (
+        f"{shown} or less is not excluded" if place and found.high >= _DEAD else f"down to {shown}"
+    )
+    return f"nearly a dead point: transmission angle {told}{place}"
+
+
+# ----------------------------------------------------------------------
+# The settings of an improvement: what varies, goals, starts.
+
+
+#: How misses count.
+FITS = ("least squares", "minimax")
+#: The least and the largest of whole numbers.
+WHOLE = {"starts": (1, 10**6), "front": (2, 1000), "seed": (0, 2**31)}
+
+_LARGEST = 1e12  # of goals: squares of misses stay far from overflow
+
+Problems = Iterator[tuple[tuple[str | int, ...], str]]
+
+
+@dataclass(frozen=True, kw_only=True)
+class Goal:
+    """A wanted value of a quantity in some rows, or of a number of the whole motion, file units.
+
+    Parameters
+    ----------
+    of : str
+        ``B.y``, ``rocker``, an output; or ``stroke(d)``, ``min(transmission)``.
+    target, least, most : float, optional
+        The wanted value, or bounds.
+    at, values : tuple of float
+        Inputs, and the values wanted there.
+    weight : float
+        How much a unit of the miss counts.
+    """
+
+    of: str
+    target: float | None = None
+    least: float | None = None
+    most: float | None = None
+    at: tuple[float, ...] = ()
+    values: tuple[float, ...] = ()
+    weight: float = 1.0
+
+    @property
+    def is_bound(self) -> bool:
+        """Whether only values beyond bounds are misses."""
+        return not self.values and self.target is None
+
+    def problems(self) -> Problems:
+        """What contradicts itself."""
+        bounds = self.least, self.most
+        wanted = {"target": (self.target,), "least": (self.least,), "most": (self.most,)}
+        for key, numbers in {**wanted, "values": self.values}.items():
+            for number in numbers:
+                if number is not None and not abs(number) <= _LARGEST:
+                    yield (key,), f"must be within ±{_LARGEST:g}, got {number:g}"
+        if self.values:
+            if len(self.values) != len(self.at):
+                told = f"{len(self.values)} values for {len(self.at)} inputs: give as many"
+                yield ("values",), told
+            wanted_at: dict[float, float] = {}
+            for k, (at, value) in enumerate(zip(self.at, self.values, strict=False)):
+                if wanted_at.setdefault(at, value) != value:
+                    told = f"is another value than {wanted_at[at]:g} at {at:g}: leave one out"
+                    yield ("values", k), told
+            if self.target is not None or bounds != (None, None):
+                yield ("values",), "exclude target, least and most: give one goal for each"
+        elif self.target is None and bounds == (None, None):
+            yield (), "has no target, least, most or values: say what is wanted"
+        if None not in bounds and self.least > self.most:  # type: ignore[operator]  # not None
+            yield ("least",), f"{self.least:g} and most = {self.most:g} contradict each other"
+        if self.target is not None and bounds != (None, None):
+            yield ("target",), "excludes least and most: give one goal for each"
+        if not (self.weight > 0.0 and math.isfinite(self.weight)):
+            yield ("weight",), f"must be above 0, got {self.weight:g}"
+
+
+@dataclass(frozen=True, kw_only=True)
+class Aid(Goal):
+    """A bound that leads a fit: whether a design keeps it is judged in its whole motion."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class Points:
+    """Points that a point of the mechanism passes.
+
+    Parameters
+    ----------
+    points : tuple of (float, float)
+        In order of travel [length].
+    point : str
+        The point that passes them; "": the first traced one.
+    inputs : tuple of float, optional
+        The leading inputs there [file units]; ``None``: free timing.
+    order : str
+        "as given" or "any", of free timing.
+    """
+
+    points: tuple[tuple[float, float], ...]
+    point: str = ""
+    inputs: tuple[float, ...] | None = None
+    order: str = "as given"
+
+    def problems(self) -> Problems:
+        """What contradicts itself."""
+        if len(self.points) < 2:
+            yield ("points",), f"{len(self.points)} points are no path: give two or more"
+        for k, (one, other) in enumerate(zip(self.points, self.points[1:], strict=False), start=2):
+            if one == other:
+                yield ("points", k - 1), f"is the same as point {k - 1}: leave one out"
+        if self.inputs is not None and len(self.inputs) != len(self.points):
+            told = f"{len(self.points)} points need as many inputs, got {len(self.inputs)}"
+            yield ("inputs",), told
+        if self.order not in _ORDERS:
+            yield ("order",), f'must be "as given" or "any", got "{self.order}"'
+        if self.order == "any" and self.inputs is not None:
+            yield ("order",), "has no effect on points with inputs: leave it out"
+
+
+_ORDERS = ("as given", "any")
+
+
+def read_goal(given: Mapping[str, Any]) -> Goal | Points:
+    """A goal, or points, from a table with their fields.
+
+    Raises
+    ------
+    MechanismError
+        For a key that neither has, or one that is missing.
+    """
+    kind: type[Goal] | type[Points] = Points if "points" in given else Goal
+    known = [own.name for own in fields(kind)]
+    found = [
+        Problem(key=(key,), message=f"is no key of a goal {choices('keys', known, key)}")
+        for key in given
+        if key not in known
+    ]
+    if kind is Goal and "of" not in given:
+        found.append(Problem(key=("of",), message="is missing: the quantity that is wanted"))
+    if found:
+        raise MechanismError(found, "the improvement")
+    return kind(**{key: _plain(entry) for key, entry in given.items()})
+
+
+def _plain(value: Any) -> Any:
+    """Arrays and lists as tuples of plain numbers."""
+    value = value.tolist() if hasattr(value, "tolist") else value
+    return tuple(map(_plain, value)) if isinstance(value, list | tuple) else value
+
+
+@dataclass(frozen=True, kw_only=True)
+class Improvement:
+    """How dimensions are improved.
+
+    Parameters
+    ----------
+    point : str
+        The point that follows the positions of a task; "": the first traced one.
+    vary : tuple of str
+        Numbers that vary; none: all lengths and coordinates.
+    goals : tuple of Goal
+    bounds : Mapping[str, (float, float)]
+        Bounds of numbers by name [file units].
+    starts : int
+    spread : float
+        Relative spread of the starts about the mechanism as it is; of numbers that are 0 relative
+        to its longest link, of angles to a radian.
+    front : int
+        The largest number of designs of a front between the goals; 0 for a weighted sum.
+    seed : int
+    fit : str
+        "least squares", or "minimax": the largest weighted miss counts.
+    """
+
+    point: str = ""
+    vary: tuple[str, ...] = ()
+    goals: tuple[Goal, ...] = ()
+    bounds: Mapping[str, tuple[float, float]] = field(default_factory=dict)
+    starts: int | None = None
+    spread: float = 0.05
+    front: int = 0
+    seed: int = 1
+    fit: str = "least squares"
+
+    def problems(self) -> Problems:
+        """What contradicts itself."""
+        for k, goal in enumerate(self.goals):
+            for key, message in goal.problems():
+                yield ("goals", k, *key), message
+        if self.fit not in FITS:
+            yield ("goal",), f'must be "least squares" or "minimax", got "{self.fit}"'
+        for name, (least, most) in WHOLE.items():
+            number = getattr(self, name)
+            whole = isinstance(number, int | np.integer) and least <= number <= most
+            if not whole and number is not getattr(Improvement, name):
+                told = f"must be a whole number of {least} to {most}, got {as_told(number)}"
+                yield (name,), told
+        if self.front and self.fit == "minimax":
+            told = "has no effect on a front, which does not add up its goals: leave it out"
+            yield ("goal",), told
+        for name, pair in self.bounds.items():
+            ends = [plain_number(end) for end in np.ravel(np.asarray(pair, dtype=object))]
+            if len(ends) != 2 or None in ends:
+                yield ("bounds", name), f"must be two numbers, got {as_told(pair)}"
+            elif not pair[0] <= pair[1]:
+                yield ("bounds", name), f"from {pair[0]:g} to {pair[1]:g} hold no number"
+        spread = plain_number(self.spread)
+        if spread is None or not 0.0 <= spread < 1.0:
+            yield ("spread",), f"must be at least 0 and below 1, got {as_told(self.spread)}"
+
+    def front_problems(self, goals: Sequence[Goal | Points]) -> Problems:
+        """Goals between which there is no front."""
+        if not self.front:
+            return
+        own = [goal for goal in goals if isinstance(goal, Points) or not goal.is_bound]
+        if len(own) < 2:
+            told = (
+                f"lies between two goals or more, and {len(own) or 'none'} is given with a target"
+            )
+            yield ("front",), f"{told}: bounds only limit it"
+        for k, goal in enumerate(goals):
+            if isinstance(goal, Goal) and goal.weight != 1.0 and not goal.is_bound:
+                told = "has no effect on a front, whose goals are not summed: leave it out"
+                yield ("goals", k, "weight"), told

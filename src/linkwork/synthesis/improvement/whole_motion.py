@@ -1,0 +1,293 @@
+"""The least transmission angle of a whole motion, and whether links keep clear of circles in it.
+
+Both are proved in boxes around the rows, :mod:`linkwork.core.motion.extremes`, which are halved
+where they do not decide.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+
+from linkwork.core.foundation.arrays import Array, BoolArray, ComplexArray, IndexArray
+from linkwork.core.foundation.names import GROUND
+from linkwork.core.foundation.rounding import PROOF_SLACK
+from linkwork.core.mechanism.description import Description
+from linkwork.core.mechanism.linkage import Draft
+from linkwork.core.mechanism.skeleton import Dyad
+from linkwork.core.mechanism.varied_numbers import VariedNumber
+from linkwork.core.motion.extremes import (
+    Boxes,
+    PointMotions,
+    boxes_of,
+    motions_of_points,
+    refined,
+    variables_of,
+)
+from linkwork.core.motion.model import Model
+from linkwork.core.results.motion import Motion, branch_end
+from linkwork.synthesis.improvement.settings import Contact, LeastAngle
+from linkwork.synthesis.lane_least_squares import Box
+
+_MOST_BOXES = 20_000  # that a proof may take, besides those of the rows
+_MOST_OF_ANGLES = 60_000  # the same, for dyads that stay near a dead point
+_CLOSE = 1e-6  # rad: between the bounds of the least angle, unless a wanted one is between them
+_WHOLE_MOTION_ROUNDING = 1e-12  # rad: of angles in proved positions
+
+
+class WholeMotion:
+    """The motion between all rows, which are proved to be on one branch; inputs in file units.
+
+    Parameters
+    ----------
+    model : Model
+        Driven by its own inputs, not by a law of time.
+    motion : Motion
+    """
+
+    def __init__(self, model: Model, motion: Motion) -> None:
+        self.model, self.motion = model, motion
+        self._number = {name: k for k, name in enumerate(model.compiled.points.names)}
+        self._least: dict[float, LeastAngle] = {}
+        self._contacts: dict[bytes, Contact] = {}
+
+    @classmethod
+    def of(cls, model: Model, motion: Motion) -> WholeMotion | None:
+        """That of a motion, if all its rows and the steps between them are proved.
+
+        A law of time says nothing about inputs between rows.
+        """
+        proved = (
+            model.untimed is None and branch_end(motion) is None and bool(motion.certified.all())
+        )
+        return cls(model, motion) if proved else None
+
+    @cached_property
+    def boxes(self) -> Boxes:
+        """One around every row."""
+        return boxes_of(self.model, self.motion, variables_of(self.model, self.motion))
+
+    @property
+    def _unit(self) -> float:
+        return float(self.model.input_scale[self.boxes.lead])
+
+    @cached_property
+    def dyads(self) -> tuple[Dyad, ...]:
+        """The dyads with a transmission angle, one for each pin."""
+        found: dict[str, Dyad] = {}
+        for dyad in self.model.motion_quantities.names.dyads:
+            found.setdefault(dyad.pin, dyad)
+        return tuple(found.values())
+
+    def least_transmission(self, wanted: float) -> LeastAngle:
+        """See :meth:`MotionBounds.least_transmission`."""
+        if wanted not in self._least:
+            self._least[wanted] = self._least_transmission(wanted)
+        return self._least[wanted]
+
+    def _least_transmission(self, wanted: float) -> LeastAngle:
+        best, place, lowest = np.inf, np.nan, np.inf
+
+        def decide(boxes: Boxes) -> BoolArray:
+            nonlocal best, place, lowest
+            middle, low = self._angles(boxes)
+            seen = np.where(boxes.known, middle, np.inf)
+            k = int(seen.argmin())
+            if seen[k] < best:
+                best, place = float(seen[k]), float(boxes.leading[k])
+            decided = low >= best - _CLOSE
+            if best >= wanted - _WHOLE_MOTION_ROUNDING:
+                decided &= low >= wanted
+            lowest = min(lowest, float(low[decided].min(initial=np.inf)))
+            return np.asarray(decided)
+
+        most = len(self.boxes) + _MOST_OF_ANGLES
+        left = refined(self.model, self.boxes, decide, most=most)
+        lowest = min(lowest, float(self._angles(left)[1].min(initial=np.inf)))
+        return LeastAngle(low=lowest, high=best, at=place / self._unit)
+
+    def _angles(self, boxes: Boxes) -> tuple[Array, Array]:
+        """The least transmission angle in the middle of boxes, and a lower bound of it in them."""
+        motions = motions_of_points(self.model, boxes)
+        middles, lows = [], []
+        with np.errstate(all="ignore"):  # bounds of boxes without a proof are infinite
+            for dyad in self.dyads:
+                one = self._direction(motions, boxes.span, dyad.pin, dyad.arms[0])
+                if dyad.guide is None:
+                    other, turned = (dyad.pin, dyad.arms[1]), 0.0
+                else:
+                    # the block passes its force on across its line
+                    other, turned = dyad.guide.line, 0.5 * np.pi
+                two = self._direction(motions, boxes.span, *other)
+                angle = one.angle - two.angle - turned
+                reach = np.abs(one.rate - two.rate) * boxes.span + one.error + two.error
+                reach = np.where(boxes.holds, reach * PROOF_SLACK, np.inf)
+                middles.append(_folded(angle))
+                lows.append(_least_folded(angle, reach))
+        return np.min(middles, axis=0), np.min(lows, axis=0)
+
+    def _direction(self, motions: PointMotions, span: Array, start: str, end: str) -> _Direction:
+        """The direction of the line between two points."""
+        a, b = self._number[start], self._number[end]
+        line = motions.place[:, b] - motions.place[:, a]
+        rate = (motions.rate[:, b] - motions.rate[:, a]) / line
+        turned = np.abs(rate) * span
+        rest = 1.0 - turned
+        lost = (motions.bend[:, a] + motions.bend[:, b]) / np.abs(line)
+        # eq. (192)
+        error = 0.5 * turned**2 / rest + np.arcsin(np.minimum(lost / rest, 1.0))
+        error = np.where((rest > 0.0) & (lost < rest), error, np.inf)
+        return _Direction(angle=np.angle(line), rate=rate.imag, error=error)
+
+    def contact(self, sides: Sequence[tuple[str, str]], circles: Array) -> Contact:
+        """See :meth:`MotionBounds.contact`."""
+        key = circles.tobytes()
+        if key not in self._contacts:
+            self._contacts[key] = self._contact(sides, circles)
+        return self._contacts[key]
+
+    def _contact(self, sides: Sequence[tuple[str, str]], circles: Array) -> Contact:
+        ends = np.array([[self._number[p] for p in side] for side in sides], dtype=np.intp)
+        met: list[tuple[float, int, float]] = []
+
+        def decide(boxes: Boxes) -> BoolArray | None:
+            motions = motions_of_points(self.model, boxes)
+            clear = boxes.holds.copy()
+            with np.errstate(all="ignore"):
+                for x, y, radius in circles:
+                    middle, low = _gaps(motions, boxes.span, ends, complex(x, y))
+                    inside = np.where(boxes.known[:, None], middle - radius, np.inf)
+                    k, side = np.unravel_index(inside.argmin(), inside.shape)
+                    if inside[k, side] <= 0.0:
+                        met.append((float(inside[k, side]), int(side), float(boxes.leading[k])))
+                    clear &= (low > radius).all(axis=1)
+            return None if met else clear
+
+        left = refined(self.model, self.boxes, decide, most=len(self.boxes) + _MOST_BOXES)
+        if met:
+            _, side, place = min(met)
+            return Contact(met=(side, place / self._unit), open=None)
+        if not len(left):
+            return Contact(met=None, open=None)
+        low, high = (end / self._unit for end in left.ends)
+        return Contact(met=None, open=(float(low.min()), float(high.max())))
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class _Direction:
+    """``angle`` and ``rate`` of a line in the middle of boxes, how far it is from turning evenly:
+    ``error`` [rad], (B,) each.
+    """
+
+    angle: Array
+    rate: Array
+    error: Array
+
+
+def _folded(angle: Array) -> Array:
+    """Angles between lines without a direction, 0 to a quarter of a turn: 40° and 140° transmit
+    equally well.
+    """
+    return np.asarray(np.abs(angle - np.pi * np.round(angle / np.pi)))
+
+
+def _least_folded(angle: Array, reach: Array) -> Array:
+    """The least folded angle within ``reach`` of others; 0 where that is not known."""
+    first, last = angle - reach, angle + reach
+    passed = ~(np.floor(first / np.pi) == np.floor(last / np.pi))
+    return np.where(passed, 0.0, np.minimum(_folded(first), _folded(last)))
+
+
+def _gaps(
+    motions: PointMotions, span: Array, ends: IndexArray, centre: complex
+) -> tuple[Array, Array]:
+    """The distances of S sides from a point in the middle of boxes, and lower bounds, (B, S)."""
+    span = span[:, None]
+    (a, b), (da, db) = ((z[:, ends[:, 0]] - c, z[:, ends[:, 1]] - c) for z, c in (
+        (motions.place, centre), (motions.rate, 0.0)
+    ))  # fmt: skip
+    lost_a, lost_b = motions.bend[:, ends[:, 0]], motions.bend[:, ends[:, 1]]
+    line, turning = b - a, db - da
+    square = line.real**2 + line.imag**2
+    share = np.where(square > 0.0, np.clip(-_dot(line, a) / square, 0.0, 1.0), 0.0)
+    nearest = a + share * line
+    away = np.abs(nearest)
+    # across a fixed line between the point and the side, eq. (193)
+    across = nearest / away
+    across_a = _dot(across, a) - np.abs(_dot(across, da)) * span - lost_a
+    across_b = _dot(across, b) - np.abs(_dot(across, db)) * span - lost_b
+    low = np.minimum(across_a, across_b)
+    # from the side's own line, eq. (194)
+    longest = np.sqrt(
+        square + 2.0 * np.abs(_dot(line, turning)) * span + np.abs(turning) ** 2 * span**2
+    )
+    lost = lost_a + lost_b
+    error = longest * lost_a + (np.abs(a) + np.abs(da) * span + lost_a) * lost
+    moved = np.abs(_cross(turning, a) + _cross(line, da)) * span
+    bent = np.abs(_cross(turning, da)) * span**2
+    from_line = (np.abs(_cross(line, a)) - moved - bent - error) / (longest + lost)
+    return away, np.fmax(low, from_line) / PROOF_SLACK
+
+
+def _dot(z: ComplexArray, w: ComplexArray) -> Array:
+    return np.asarray(z.real * w.real + z.imag * w.imag)
+
+
+def _cross(z: ComplexArray, w: ComplexArray) -> Array:
+    return np.asarray(z.real * w.imag - z.imag * w.real)
+
+
+# ----------------------------------------------------------------------
+# How far a point can be from the fixed pivots of a mechanism, whatever its numbers.
+#
+# A point is joined to a pivot by sides of links, each no longer than the upper bound of its length:
+# it is never farther away than the shortest such chain.
+
+
+_REACH_ROUNDING = 1e-9  # relative
+
+
+class Reach:
+    """The reach of points from fixed pivots, for numbers in a box."""
+
+    def __init__(self, description: Description, numbers: Sequence[VariedNumber], box: Box) -> None:
+        self.pivots: dict[str, tuple[complex, float]] = {}
+        self.sides: dict[frozenset[str], float] = {}
+        if not isinstance(description, Draft):
+            return
+        most = dict(zip(numbers, box.most, strict=True))
+        for key, length in description.lengths.items():
+            high = most.get(VariedNumber(key, "lengths", key), description.numbers(length))
+            self.sides[frozenset(key.split())] = float(high)
+        fixed = {(q.key, q.axis): k for k, q in enumerate(numbers) if q.table == "points"}
+        for name in description.links.get(GROUND, ()):
+            place = [description.numbers(x) for x in description.points[name]]
+            away = np.zeros(2)
+            for axis in (0, 1):
+                if (name, axis) in fixed:
+                    k = fixed[name, axis]
+                    away[axis] = np.abs(np.array([box.least[k], box.most[k]]) - place[axis]).max()
+            self.pivots[name] = complex(*place), float(np.hypot(*away))
+
+    def missing(self, name: str, place: complex) -> tuple[str, float, float]:
+        """A pivot from which a place is out of reach, its distance, and the reach; or ""."""
+        for pivot, (centre, moves) in self.pivots.items():
+            most = self._chain(pivot, name) + moves
+            away = abs(place - centre)
+            if away > most * (1.0 + _REACH_ROUNDING):
+                return pivot, away, most
+        return "", 0.0, math.inf
+
+    def _chain(self, start: str, end: str) -> float:
+        """The length of the shortest chain of sides (Bellman and Ford)."""
+        far = {start: 0.0}
+        for _ in range(len(self.sides)):
+            for side, length in self.sides.items():
+                for one, other in (tuple(side), tuple(side)[::-1]) if len(side) == 2 else ():
+                    if one in far and far[one] + length < far.get(other, math.inf):
+                        far[other] = far[one] + length
+        return far.get(end, math.inf)

@@ -1,0 +1,416 @@
+"""Bounds of the parameters and of the own variables of a fit of lanes."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, fields, replace
+from typing import Any, Self
+
+import numpy as np
+
+from linkwork.core.foundation.arrays import Array, BoolArray, IndexArray
+from linkwork.core.foundation.rounding import EPSILON
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Box:
+    """Bounds of the parameters.
+
+    Parameters
+    ----------
+    least, most : (P,)
+    least_effect : float
+        Parameters that change residuals less than this part of the largest change, each over its
+        whole range, are damped as if they changed them so much.
+    """
+
+    least: Array
+    most: Array
+    least_effect: float = 0.0
+
+    def inside(self, x: Array) -> Array:
+        """The nearest parameters in the box."""
+        return np.asarray(np.clip(x, self.least, self.most))
+
+    def least_scale(self, scale: Array) -> Array:
+        """What is added to the squares of effects (D, P) that damp parameters."""
+        square = (self.most - self.least) ** 2
+        ranged = np.isfinite(square) & (square > 0.0)
+        most = np.where(ranged, scale * square, 0.0).max(axis=1, keepdims=True, initial=0.0)
+        return np.where(ranged, self.least_effect**2 * most / square, 0.0)
+
+
+@dataclass(frozen=True, kw_only=True)
+class OwnVariables:
+    """Where the own variables of rows may be: between bounds, and in order.
+
+    Parameters
+    ----------
+    least, most : float
+        The bounds of all of them.
+    in_order : bool
+        Whether they rise from row to row.
+    gap, span : float
+        Of variables in order: they rise by ``gap`` or more, and by less than ``span`` altogether.
+    """
+
+    least: float = -np.inf
+    most: float = np.inf
+    in_order: bool = False
+    gap: float = 0.0
+    span: float = np.inf
+
+    def inside(self, t: Array) -> Array:
+        """Variables (D, N) moved into order, each as little as those before it allow, and between
+        the bounds.
+        """
+        low, high = self._bounds(t.shape[1])
+        if self.in_order:
+            steps = self.gap * np.arange(t.shape[1])
+            t = np.maximum.accumulate(t - steps, axis=1) + steps
+            t = np.minimum(t, t[:, :1] + self.span - steps[::-1])
+        return np.asarray(np.clip(t, low, high))
+
+    def held(self, t: Array, slope: Array) -> BoolArray:
+        """Whether a row is at a bound that it would pass down the slope, (D, N)."""
+        low, high = self._bounds(t.shape[1])
+        return np.asarray(((t <= low) & (slope > 0.0)) | ((t >= high) & (slope < 0.0)))
+
+    def together(self, t: Array, pull: Array) -> Array | None:
+        """Which rows move as one, (D, N, N): those that touch and are pushed together."""
+        if not self.in_order:
+            return None
+        contact = np.zeros(t.shape, dtype=bool)
+        # down the slope the later row would come before the earlier one
+        contact[:, 1:] = np.diff(t, axis=1) <= self.gap * (1.0 + 1e-3)
+        contact[:, 1:] &= pull[:, 1:] >= pull[:, :-1]
+        if not contact.any():
+            return None
+        group = np.cumsum(~contact, axis=1)
+        return np.asarray((group[:, :, None] == group[:, None, :]).astype(float))
+
+    def _bounds(self, count: int) -> tuple[Array, Array]:
+        """Bounds of each row, which leave room for those before and after it."""
+        steps = self.gap * np.arange(count)
+        return np.asarray(self.least + steps), np.asarray(self.most - steps[::-1])
+
+
+# ----------------------------------------------------------------------
+# Bounded least squares of many starts at once, by Levenberg and Marquardt.
+#
+# A lane minimises |f(x, t)|² over parameters x (P,) in a box. The residuals come in N rows of m,
+# and row k may have a variable t_k of its own, such as the input at which a curve comes nearest to
+# a point. These variables are eliminated from every step, eq. (152), and may be kept in order.
+#
+# References
+# ----------
+# D. W. Marquardt, An algorithm for least-squares estimation of nonlinear parameters, SIAM Journal
+# 11 (1963), doi:10.1137/0111030. G. H. Golub, V. Pereyra, Separable nonlinear least squares,
+# Inverse Problems 19 (2003) R1, doi:10.1088/0266-5611/19/2/201.
+
+
+_FIRST_DAMPING, _LESS, _MORE = 1e-3, 0.2, 4.0
+_AFTER_MORE = 0.8  # less at the first step that gains: what has just failed would fail again
+_LARGEST_DAMPING, _SMALLEST_DAMPING = 1e10, 1e-14
+_IDLE = 1e-13  # relative decrease of the sum of squares: rounding
+_MOST_IDLE = 3  # steps in a row
+_ROUNDINGS = 8.0 * EPSILON  # relative change of numbers: rounding
+_SINGULAR = 1e-13  # of a diagonal entry: keeps the matrix regular
+
+
+@dataclass(frozen=True, eq=False)
+class Residuals:
+    """Residuals of D lanes with their derivatives; NaN where they do not exist.
+
+    Parameters
+    ----------
+    rows : (D, N, m)
+    by_x : (D, N, m, P)
+    by_t : (D, N, m), optional
+        Each row by its own variable; ``None`` without these variables.
+    shared : (D, K)
+        Further residuals, of the parameters alone.
+    shared_by_x : (D, K, P)
+    """
+
+    rows: Array
+    by_x: Array
+    by_t: Array | None
+    shared: Array
+    shared_by_x: Array
+
+    def take(self, which: BoolArray) -> Residuals:
+        """Those of some lanes."""
+        parts: list[Any] = [None if own is None else own[which] for own in self._parts]
+        return Residuals(*parts)
+
+    def replaced(self, which: BoolArray, other: Residuals) -> Residuals:
+        """Those of another place in some lanes."""
+        parts: list[Any] = [
+            None if old is None or new is None else _either(which, new, old)
+            for old, new in zip(self._parts, other._parts, strict=True)
+        ]
+        return Residuals(*parts)
+
+    @classmethod
+    def joined(cls, parts: Sequence[Self]) -> Self:
+        """Those of several parts in one."""
+        columns = zip(*(part._parts for part in parts), strict=True)
+        every: list[Any] = [None if own[0] is None else np.concatenate(own) for own in columns]
+        return cls(*every)
+
+    @property
+    def _parts(self) -> tuple[Any, ...]:
+        return tuple(getattr(self, field.name) for field in fields(self))
+
+    @property
+    def total(self) -> Array:
+        """The sums of squares, (D,); infinite where residuals do not exist."""
+        flat = self.rows.reshape(len(self.rows), -1)
+        with np.errstate(all="ignore"):
+            total = np.einsum("dk,dk->d", flat, flat)
+            total += np.einsum("dk,dk->d", self.shared, self.shared)
+        return np.asarray(np.where(np.isfinite(total), total, np.inf))
+
+
+#: Residuals of parameters (D, P) and own variables (D, N) of the lanes with these numbers, (D,).
+Evaluate = Callable[[Array, Array, IndexArray], Residuals]
+
+
+_ANYWHERE = OwnVariables()
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class LaneFit:
+    """Where D lanes are.
+
+    Parameters
+    ----------
+    x : (D, P)
+    t : (D, N)
+        Own variables of the rows.
+    total : (D,)
+        The sum of squares; infinite where residuals do not exist.
+    damping : (D,)
+    failed : (D,) bool
+        Whether the last step gained nothing.
+    idle : (D,)
+        The number of steps in a row that gained nothing.
+    interrupted : bool
+        Whether the user stopped the steps.
+    """
+
+    x: Array
+    t: Array
+    total: Array
+    damping: Array
+    failed: BoolArray
+    idle: IndexArray
+    interrupted: bool = False
+
+    def __len__(self) -> int:
+        return len(self.total)
+
+    @property
+    def done(self) -> BoolArray:
+        """Lanes that gain nothing more."""
+        return np.asarray(
+            (self.idle >= _MOST_IDLE)
+            | (self.damping > _LARGEST_DAMPING)
+            | ~np.isfinite(self.total)
+            | (self.total == 0.0)
+        )
+
+    def take(self, index: IndexArray | BoolArray) -> LaneFit:
+        """Some of the lanes, in the order of ``index``."""
+        return replace(self, **{name: getattr(self, name)[index] for name in _ARRAYS})
+
+    def put(self, index: IndexArray, part: LaneFit) -> None:
+        """Replace some of the lanes."""
+        for name in _ARRAYS:
+            getattr(self, name)[index] = getattr(part, name)
+
+    @classmethod
+    def joined(cls, parts: Sequence[Self]) -> Self:
+        """Lanes of several parts in one."""
+        columns: dict[str, Any] = {
+            name: np.concatenate([getattr(part, name) for part in parts]) for name in _ARRAYS
+        }
+        return cls(interrupted=any(part.interrupted for part in parts), **columns)
+
+
+_ARRAYS = tuple(field.name for field in fields(LaneFit) if field.name != "interrupted")
+
+
+def starts_of(x: Array, t: Array) -> LaneFit:
+    """Lanes (D, P), (D, N) that have done no step yet."""
+    count = len(x)
+    return LaneFit(
+        x=x,
+        t=t,
+        total=np.full(count, np.inf),
+        damping=np.full(count, _FIRST_DAMPING),
+        failed=np.zeros(count, dtype=bool),
+        idle=np.zeros(count, dtype=np.intp),
+    )
+
+
+def minimise(
+    evaluate: Evaluate,
+    fit: LaneFit,
+    box: Box,
+    steps: int,
+    *,
+    own: OwnVariables = _ANYWHERE,
+) -> LaneFit:
+    """Lanes after some steps, or fewer where they gain nothing more.
+
+    Parameters
+    ----------
+    evaluate : function of (D, P), (D, N) and the numbers of lanes
+    fit : LaneFit
+    box : Box
+    steps : int
+    own : OwnVariables
+
+    Returns
+    -------
+    LaneFit
+        As many lanes, in the same order.
+
+    Notes
+    -----
+    An interruption (Ctrl-C) ends the steps; the lanes stay where they are then.
+    """
+    lanes = np.arange(len(fit))
+    found = fit.take(lanes)
+    x = box.inside(fit.x)
+    t = own.inside(fit.t)
+    now = evaluate(x, t, lanes)
+    # sums and damping of another problem are of no use here
+    damping = np.minimum(fit.damping, _FIRST_DAMPING)
+    idle = np.zeros_like(fit.idle)
+    work = replace(fit, x=x, t=t, total=now.total, damping=damping, idle=idle)
+    interrupted = False
+    try:
+        for _ in range(steps):
+            done = work.done
+            if done.any():
+                found.put(lanes, work)
+                left = ~done
+                lanes, work, now = lanes[left], work.take(left), now.take(left)
+            if not len(lanes):
+                break
+            work, now = _step(evaluate, work, now, lanes, box, own)
+    except KeyboardInterrupt:
+        interrupted = True
+    found.put(lanes, work)
+    return replace(found, interrupted=interrupted or fit.interrupted)
+
+
+def _step(
+    evaluate: Evaluate,
+    work: LaneFit,
+    now: Residuals,
+    lanes: IndexArray,
+    box: Box,
+    own: OwnVariables,
+) -> tuple[LaneFit, Residuals]:
+    """One step of every lane; those that gain nothing by it stay and are damped more."""
+    dx, dt = _newton_step(work, now, box, own)
+    x, t = box.inside(work.x + dx), own.inside(work.t + dt)
+    there = evaluate(x, t, lanes)
+    total = there.total
+    better = total < work.total
+    with np.errstate(invalid="ignore"):  # infinite sums have no difference
+        change = np.abs(work.total - total)
+    # a step that changes the sum by rounding alone gains nothing, in whichever direction
+    still = (change <= _IDLE * work.total) | _unmoved(work.x, x) & _unmoved(work.t, t)
+    idle = np.where(still, work.idle + 1, np.where(better, 0, work.idle))
+    less = np.where(work.failed, _AFTER_MORE, _LESS)
+    damping = np.where(
+        better, np.maximum(work.damping * less, _SMALLEST_DAMPING), work.damping * _MORE
+    )
+    return (
+        replace(
+            work,
+            x=_either(better, x, work.x),
+            t=_either(better, t, work.t),
+            total=np.where(better, total, work.total),
+            damping=damping,
+            failed=~better,
+            idle=idle,
+        ),
+        now.replaced(better, there),
+    )
+
+
+def _unmoved(old: Array, new: Array) -> BoolArray:
+    """Lanes whose numbers (D, K) change by rounding alone."""
+    with np.errstate(invalid="ignore"):
+        return np.asarray((np.abs(new - old) <= _ROUNDINGS * np.abs(old)).all(axis=1))
+
+
+def _either(which: BoolArray, new: Array, old: Array) -> Array:
+    return np.asarray(np.where(which.reshape(-1, *[1] * (new.ndim - 1)), new, old))
+
+
+@np.errstate(all="ignore")  # lanes without residuals have no step
+def _newton_step(
+    work: LaneFit, now: Residuals, box: Box, rows: OwnVariables
+) -> tuple[Array, Array]:
+    """Changes of x (D, P) and t (D, N)."""
+    count, parameters = work.x.shape
+    flat = now.by_x.reshape(count, -1, parameters)
+    residuals = now.rows.reshape(count, -1, 1)
+    transposed = flat.transpose(0, 2, 1)
+    normal, gradient = transposed @ flat, (transposed @ residuals)[:, :, 0]
+    if now.shared.shape[1]:
+        across = now.shared_by_x.transpose(0, 2, 1)
+        normal += across @ now.shared_by_x
+        gradient += (across @ now.shared[:, :, None])[:, :, 0]
+    scale = np.einsum("dpp->dp", normal)
+    if now.by_t is None:
+        dx = _solved(normal, gradient, scale, work, box)
+        return dx, np.zeros_like(work.t)
+    # eq. (152): the own variables of rows, or of rows that touch, are eliminated
+    own = np.einsum("dnm,dnm->dn", now.by_t, now.by_t)
+    slope = np.einsum("dnm,dnm->dn", now.by_t, now.rows)
+    mixed = np.einsum("dnm,dnmp->dnp", now.by_t, now.by_x)
+    curve = own * (1.0 + work.damping[:, None]) + EPSILON * (
+        own.max(axis=1, keepdims=True) + 1e-300
+    )
+    together = rows.together(work.t, slope / curve)
+    summed, slopes, mixtures = curve, slope, mixed
+    if together is not None:
+        summed = (together @ curve[:, :, None])[:, :, 0]
+        slopes = (together @ slope[:, :, None])[:, :, 0]
+        mixtures = together @ mixed
+    held = rows.held(work.t, slopes)
+    if together is not None:
+        held = (together @ held[:, :, None])[:, :, 0] > 0.0
+    shares = np.where(held[:, :, None], 0.0, mixtures / summed[:, :, None])
+    normal = normal - mixed.transpose(0, 2, 1) @ shares
+    gradient = gradient - (shares.transpose(0, 2, 1) @ slope[:, :, None])[:, :, 0]
+    dx = _solved(normal, gradient, scale, work, box)
+    dt = -(slopes + (mixtures @ dx[:, :, None])[:, :, 0]) / summed
+    return dx, np.where(held, 0.0, dt)
+
+
+def _solved(normal: Array, gradient: Array, scale: Array, work: LaneFit, box: Box) -> Array:
+    """The damped step of x, which leaves parameters at their bounds that would pass them."""
+    held = ((work.x <= box.least) & (gradient > 0.0)) | ((work.x >= box.most) & (gradient < 0.0))
+    held |= box.least == box.most
+    # parameters have units of their own; those without effect stay
+    damped = scale + box.least_scale(scale)
+    diagonal = work.damping[:, None] * damped + _SINGULAR * np.where(damped > 0.0, damped, 1.0)
+    parameters = normal.shape[1]
+    matrix = normal + diagonal[:, :, None] * np.eye(parameters)
+    if held.any():
+        free = ~held
+        matrix = matrix * (free[:, :, None] & free[:, None, :])
+        matrix += held[:, :, None] * np.eye(parameters)
+        gradient = np.where(held, 0.0, gradient)
+    wrong = ~np.asarray(np.isfinite(matrix).all(axis=(1, 2)) & np.isfinite(gradient).all(axis=1))
+    matrix[wrong], right = np.eye(parameters), np.where(wrong[:, None], 0.0, -gradient)
+    return np.asarray(np.linalg.solve(matrix, right[:, :, None])[:, :, 0])

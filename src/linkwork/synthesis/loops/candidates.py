@@ -1,0 +1,260 @@
+"""Dyads and loops that linear equations determine: circumcentres and Freudenstein's equation."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import dataclass, field, fields, replace
+from enum import Enum
+from typing import Any
+
+import numpy as np
+
+from linkwork.core.foundation.arrays import Array, BoolArray, ComplexArray, IndexArray
+from linkwork.core.foundation.rounding import UNIT_ROUNDOFF
+
+# roundings of one coordinate of a pose carried to another frame, and of products of two of them
+_LOSS = 16.0
+
+
+def circumcentres(points: ComplexArray, far: Array) -> tuple[ComplexArray, Array]:
+    """The centres of circles through three points, with bounds of their errors.
+
+    Parameters
+    ----------
+    points : (B, 3) complex
+    far : (B,)
+        The largest size of a number that the points were computed from.
+
+    Returns
+    -------
+    (B,) complex, (B,)
+        Infinite bounds where the points are, to rounding, on one line.
+    """
+    v, w = points[:, 1] - points[:, 0], points[:, 2] - points[:, 0]
+    area = 2.0 * (v.real * w.imag - v.imag * w.real)
+    longest = np.maximum(np.abs(v), np.abs(w))
+    doubt = _LOSS * UNIT_ROUNDOFF * (far + longest)
+    # eq. (148): c (v × w) 2 = i (|w|² v - |v|² w)
+    numerator = 1j * (np.abs(w) ** 2 * v - np.abs(v) ** 2 * w)
+    with np.errstate(all="ignore"):
+        centre = numerator / area
+        divisor = np.abs(area) - 8.0 * longest * doubt
+        error = (16.0 * longest**2 + 8.0 * np.abs(centre) * longest) * doubt / divisor
+    error = np.where(divisor > 0, error + doubt, np.inf)
+    return points[:, 0] + centre, error
+
+
+def solve_with_bound(
+    matrix: Array, right: Array, doubt: Array, right_doubt: Array
+) -> tuple[Array, Array]:
+    """The solutions x (B, n) of linear systems, and bounds of their errors.
+
+    Parameters
+    ----------
+    matrix : (B, n, n)
+    right : (B, n)
+    doubt, right_doubt : (B,)
+        Bounds of the errors of all entries of the matrices, and of the right sides.
+
+    Returns
+    -------
+    (B, n), (B, n)
+        Infinite bounds where a matrix may be singular.
+    """
+    n = matrix.shape[-1]
+    regular = _regular(matrix)
+    safe = np.where(regular[:, None, None], matrix, np.eye(n))
+    inverse = np.linalg.inv(safe)
+    x = (inverse @ right[..., None])[..., 0]
+    size = np.abs(inverse)
+    rest = right - (safe @ x[..., None])[..., 0]
+    entries = right_doubt[:, None] + doubt[:, None] * np.abs(x).sum(axis=1, keepdims=True)
+    loss = (n + 2) * UNIT_ROUNDOFF
+    rest = (
+        np.abs(rest)
+        + entries
+        + loss * (np.abs(right) + (np.abs(safe) @ np.abs(x)[..., None])[..., 0])
+    )
+    away = np.abs(np.eye(n) - inverse @ safe) + size @ (loss * np.abs(safe) + doubt[:, None, None])
+    norm = away.sum(axis=2).max(axis=1)
+    with np.errstate(all="ignore"):
+        # Rump 2010: |x - x*| ≤ |R rest| / (1 - ‖I - R A‖)
+        bound = (size @ rest[..., None])[..., 0].max(axis=1) / (1.0 - norm)
+    bound = np.where(regular & (norm < 1.0), bound, np.inf)
+    return x, np.broadcast_to(bound[:, None], x.shape)
+
+
+def _regular(matrix: Array) -> BoolArray:
+    sizes = np.linalg.svd(matrix, compute_uv=False)
+    # an elimination may find no pivot in what is singular to its rounding
+    return np.asarray(sizes[..., -1] > _LOSS * UNIT_ROUNDOFF * sizes[..., 0])
+
+
+# ----------------------------------------------------------------------
+# Four-bars and slider-cranks that guide a body through positions, many of one kind at once.
+
+
+class LoopKind(Enum):
+    """A mechanism of one loop that guides a body; the value is its name in files."""
+
+    FOUR_BAR = "four-bar"
+    SLIDER_CRANK = "slider-crank"
+    INVERTED = "inverted-slider-crank"
+    #: A and B slide on fixed lines: the elliptic trammel.
+    DOUBLE_SLIDER = "double-slider"
+    #: A slides on a fixed line, a line of the body in a block that swivels about B0.
+    RAPSON = "rapson-slide"
+    #: Two lines of the body slide in blocks that swivel about A0 and B0.
+    OLDHAM = "oldham-coupling"
+
+    @property
+    def has_crank(self) -> bool:
+        """Whether A turns about A0."""
+        return self not in (LoopKind.DOUBLE_SLIDER, LoopKind.RAPSON, LoopKind.OLDHAM)
+
+    @property
+    def pivots(self) -> tuple[str, ...]:
+        """Its fixed pivots."""
+        if self is LoopKind.DOUBLE_SLIDER:
+            return ()
+        if self is LoopKind.RAPSON:
+            return ("B0",)
+        return ("A0",) if self is LoopKind.SLIDER_CRANK else ("A0", "B0")
+
+    @property
+    def body_line(self) -> bool:
+        """Whether a line of the body through B slides in a block at B0."""
+        return self in (LoopKind.INVERTED, LoopKind.RAPSON, LoopKind.OLDHAM)
+
+
+#: The names of mechanisms without a crank.
+GUIDED = tuple(kind.value for kind in LoopKind if not kind.has_crank)
+
+
+class Drive(Enum):
+    """The driven link: the crank or swivelling block at A0 or B0, the slider, or one at A."""
+
+    A0 = "A0"
+    B0 = "B0"
+    SLIDER = "slider"
+    SLIDER_A = "slider at A"
+
+    @property
+    def turns(self) -> bool:
+        """Whether the input is an angle."""
+        return self in (Drive.A0, Drive.B0)
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Candidates:
+    """D designs of one kind that hold a body at N positions.
+
+    The body is the coupler; its moving pivots are A and B, its guided point is P.
+
+    Parameters
+    ----------
+    kind : LoopKind
+    fixed_a : (D,) complex
+        The fixed pivot A0 [length].
+    fixed_b : (D,) complex
+        The fixed pivot B0, or a point of the line on which B slides [length].
+    direction : (D,) complex
+        The unit vector of that line; 0 for a four-bar. An inverted slider-crank has a line of the
+        coupler, through B, which slides through B0: its unit vector, seen along B - A.
+    moving_a, moving_b : (D, N) complex
+        The moving pivots at the positions [length].
+    guided : (D, N) complex
+        The guided point P at the positions [length].
+    error : (D,)
+        A bound of the error of every pivot at every position [length]; infinite where no proof
+        holds.
+    miss : (D,)
+        How far the design passes the wanted positions, in their unit; 0 for exact ones.
+    direction_a : (D,) complex, optional
+        The unit vector of the line on which A slides, through ``fixed_a``; of an Oldham coupling
+        that of the body's line through A and A0, seen along B - A. 0 where A turns about A0.
+    """
+
+    kind: LoopKind
+    fixed_a: ComplexArray
+    fixed_b: ComplexArray
+    direction: ComplexArray
+    moving_a: ComplexArray
+    moving_b: ComplexArray
+    guided: ComplexArray
+    error: Array
+    miss: Array
+    direction_a: ComplexArray = field(default_factory=lambda: np.zeros(0, dtype=complex))
+
+    def __post_init__(self) -> None:
+        if not self.direction_a.size:
+            object.__setattr__(self, "direction_a", np.zeros_like(self.direction))
+
+    def __len__(self) -> int:
+        return len(self.fixed_a)
+
+    @property
+    def drives(self) -> tuple[Drive, ...]:
+        """The links that can be driven."""
+        sliding = self.kind in (LoopKind.SLIDER_CRANK, LoopKind.DOUBLE_SLIDER)
+        first = Drive.A0 if "A0" in self.kind.pivots else Drive.SLIDER_A
+        return first, Drive.SLIDER if sliding else Drive.B0
+
+    @property
+    def lines(self) -> ComplexArray:
+        """The unit vectors (D, N) of the body's lines through B that slide in blocks at B0."""
+        return self._seen_along(self.direction)
+
+    @property
+    def lines_a(self) -> ComplexArray:
+        """Those of the body's lines through A that slide in blocks at A0."""
+        return self._seen_along(self.direction_a)
+
+    def _seen_along(self, direction: ComplexArray) -> ComplexArray:
+        along = self.moving_b - self.moving_a
+        return np.asarray(direction[:, None] * along / np.abs(along))
+
+    def take(self, index: IndexArray | slice) -> Candidates:
+        """Some of the designs, in the order of ``index``."""
+        changes = {name: getattr(self, name)[index] for name in _ARRAYS}
+        return replace(self, **changes)
+
+    def driven_at_b(self) -> Candidates:
+        """The same designs with the names of both sides exchanged."""
+        # what is seen along B - A is seen along A - B
+        sign = -1.0 if self.kind is LoopKind.OLDHAM else 1.0
+        return replace(
+            self,
+            direction=sign * self.direction_a,
+            direction_a=sign * self.direction,
+            fixed_a=self.fixed_b,
+            fixed_b=self.fixed_a,
+            moving_a=self.moving_b,
+            moving_b=self.moving_a,
+        )
+
+    def moved(self, shift: complex, factor: complex) -> Candidates:
+        """The same designs turned and enlarged by a factor about 0, then moved."""
+        places = ("fixed_a", "fixed_b", "moving_a", "moving_b", "guided")
+        changes: dict[str, Any] = {name: shift + factor * getattr(self, name) for name in places}
+        size = abs(factor)
+        rounding = 8.0 * UNIT_ROUNDOFF * (abs(shift) + size * np.abs(self.moving_b).max(axis=1))
+        return replace(
+            self,
+            direction=self.direction * (1.0 if self.kind.body_line else factor / size),
+            direction_a=self.direction_a * (1.0 if self.kind is LoopKind.OLDHAM else factor / size),
+            error=self.error * size + rounding,
+            **changes,
+        )
+
+    @classmethod
+    def joined(cls, parts: Iterable[Candidates]) -> Candidates:
+        """Designs of one kind in one container."""
+        found = list(parts)
+        together = {
+            name: np.concatenate([getattr(part, name) for part in found]) for name in _ARRAYS
+        }
+        return cls(kind=found[0].kind, **together)
+
+
+_ARRAYS = tuple(f.name for f in fields(Candidates) if f.name != "kind")

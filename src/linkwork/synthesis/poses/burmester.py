@@ -1,0 +1,263 @@
+"""Four poses: the centre-point curve as proved arcs, and proved dyads along it.
+
+A fixed pivot p sees the body turn through four poses on a circle if
+
+    Im( k13 (p - P13) k24 (p - P24) conj( k23 (p - P23) k14 (p - P14) ) ) = 0,
+
+with the poles Pjk, about which the body turns from pose j to pose k (Burmester 1888). On the line
+through P13 of direction u = e^{iφ} this is quadratic in the distance t from P13, eq. (151):
+
+    Im(u (b̄ + c̄ - ā)) t² + ( Im(a (b̄ + c̄)) + Im(u² b̄ c̄) ) t + Im(u a b̄ c̄) = 0,
+
+a = P13 - P24, b = P13 - P23, c = P13 - P14. Its discriminant is a trigonometric polynomial of
+degree 2 in 2φ. Between its roots, at most four, there are two points of the curve or none.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from itertools import permutations
+
+import numpy as np
+
+from linkwork.core.foundation.arrays import Array, BoolArray, ComplexArray
+from linkwork.core.foundation.rounding import RANK_TOLERANCE, UNIT_ROUNDOFF
+from linkwork.synthesis.poses.dyad_set import DyadSet, PoseSet
+from linkwork.synthesis.poses.dyads import NormalPoses, Refusal, solve_on_lines
+
+__all__ = [
+    "Arc",
+    "CentrePoints",
+    "centre_points",
+    "dyads_with_pivots",
+    "sampled_dyads",
+    "sliding_dyad",
+]
+
+_SAMPLES = 48  # directions over all arcs
+_THROUGH = np.exp(0.25j * np.pi * np.arange(4))  # directions of lines through a given pivot
+_OWN_POLE = 1e-7  # of the size of the task: the pencil's own pole
+#: Turns from pose to pose below this leave no finite pole.
+_SMALLEST_TURN = 1e-6
+# roundings of the discriminant's coefficients: products of four, sums of a few
+_LOSS = 64.0 * UNIT_ROUNDOFF
+
+
+@dataclass(frozen=True, kw_only=True)
+class Arc:
+    """An arc of the centre-point curve, seen from the pole of poses 1 and 3 of the pencil.
+
+    Parameters
+    ----------
+    start, stop : float
+        Directions of its lines [rad]; ``stop - start`` is π for an arc without ends.
+    closed : bool
+        Whether both points of a line join at the ends.
+    proved : bool
+        Whether its ends are certain, and that there are no further ones.
+    """
+
+    start: float
+    stop: float
+    closed: bool
+    proved: bool
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class CentrePoints:
+    """The centre-point curve of four poses.
+
+    Parameters
+    ----------
+    pole : complex
+        The vertex of the pencil of lines [length].
+    arcs : tuple of Arc
+    differences : (complex, complex, complex)
+        a, b, c of the equation.
+    """
+
+    pole: complex
+    arcs: tuple[Arc, ...]
+    differences: tuple[complex, complex, complex]
+
+    def points(self, directions: Array) -> ComplexArray:
+        """The two points (K, 2) on lines of directions (K,) [rad]; NaN where there are none."""
+        u = np.exp(1j * directions)
+        a, b, c = (np.conj(z) for z in self.differences)
+        # eq. (151)
+        alpha = (u * (b + c - a)).imag
+        beta = (np.conj(a) * (b + c)).imag + (u**2 * b * c).imag
+        gamma = (u * np.conj(a) * b * c).imag
+        with np.errstate(invalid="ignore", divide="ignore"):
+            root = np.sqrt(beta**2 - 4.0 * alpha * gamma)
+            # without cancellation
+            q = -0.5 * (beta + np.where(beta >= 0, root, -root))
+            t = np.stack([q / alpha, gamma / q], axis=1)
+        return np.asarray(self.pole + t * u[:, None])
+
+
+def centre_points(points: ComplexArray, angles: Array) -> CentrePoints | None:
+    """The centre-point curve of four poses (4,), (4,); ``None`` if three of them are parallel."""
+    labels = _labels(angles)
+    if labels is None:
+        return None
+    d, e = points[labels], np.exp(-1j * angles[labels])
+
+    def pole(j: int, k: int) -> complex:
+        return complex((e[j] * d[j] - e[k] * d[k]) / (e[j] - e[k]))
+
+    vertex = pole(0, 2)
+    differences = vertex - pole(1, 3), vertex - pole(1, 2), vertex - pole(0, 3)
+    return CentrePoints(pole=vertex, arcs=_arcs(*differences), differences=differences)
+
+
+def _labels(angles: Array) -> list[int] | None:
+    """The order of poses in which the four turns that are used are largest."""
+    turns = np.exp(1j * angles)
+    best, order = _SMALLEST_TURN, None
+    for labels in permutations(range(4)):
+        i, j, k, m = labels
+        pairs = ((i, k), (j, m), (j, k), (i, m))
+        least = min(abs(turns[x] - turns[y]) for x, y in pairs)
+        if least > best * (1.0 + 1e-9):
+            best, order = least, list(labels)
+    return order
+
+
+def _arcs(a: complex, b: complex, c: complex) -> tuple[Arc, ...]:
+    """The arcs, from the roots of the discriminant on the circle of w = u²."""
+    coefficients, error = _discriminant(a, b, c)
+    w, proved, on_circle = _roots(coefficients, error)
+    half = 0.5 * np.sort(np.mod(np.angle(w[on_circle]), 2.0 * np.pi))
+    if not half.size:
+        free = _value(coefficients, 0.0) > 0
+        return (Arc(start=0.0, stop=np.pi, closed=False, proved=proved),) if free else ()
+    ends = zip(half, [*half[1:], half[0] + np.pi], strict=True)
+    return tuple(
+        Arc(start=float(start), stop=float(stop), closed=True, proved=proved)
+        for start, stop in ends
+        if _value(coefficients, 0.5 * (start + stop)) > 0
+    )
+
+
+def _discriminant(a: complex, b: complex, c: complex) -> tuple[ComplexArray, float]:
+    """c2, c1, c0 of c0 + Re(c1 w) + Re(c2 w²), w = e^{2iφ}, and a bound of their errors."""
+    x, y = np.conj(b + c - a), a * np.conj(b * c)
+    z, free = np.conj(b * c), (a * np.conj(b + c)).imag
+    # β = free + Im(w z); β² = free² + 2 free Im(w z) + |z|²/2 - Re(w² z²)/2
+    # 4 α γ = 4 Im(u x) Im(u y) = 2 Re(x ȳ) - 2 Re(w x y)
+    second = -0.5 * z**2
+    first = -2j * free * z + 2.0 * x * y
+    zeroth = free**2 + 0.5 * abs(z) ** 2 - 2.0 * (x * np.conj(y)).real
+    size = (abs(a) + abs(b) + abs(c)) ** 4
+    return np.array([second, first, zeroth]), _LOSS * size
+
+
+def _value(coefficients: ComplexArray, phi: float) -> float:
+    w = np.exp(2j * phi)
+    second, first, zeroth = coefficients
+    return float(zeroth.real + (first * w).real + (second * w * w).real)
+
+
+def _roots(coefficients: ComplexArray, error: float) -> tuple[ComplexArray, bool, BoolArray]:
+    """The roots w, whether their number on the circle is proved, and which are on it.
+
+    Smith's discs contain all roots, one each where they are disjoint. A disc without its mirror
+    image in another one has a root on the circle.
+    """
+    second, first, zeroth = coefficients
+    # times 2 w²: c2 w⁴ + c1 w³ + 2 c0 w² + c̄1 w + c̄2
+    polynomial = np.array([second, first, 2.0 * zeroth.real, np.conj(first), np.conj(second)])
+    w = np.asarray(np.roots(polynomial), dtype=np.complex128)
+    if len(w) < 4:
+        return w, False, np.abs(np.abs(w) - 1.0) < _OWN_POLE
+    powers = np.abs(w)[:, None] ** np.arange(4, -1, -1)
+    loss = 2.0 * error * powers.sum(axis=1) + 16.0 * UNIT_ROUNDOFF * (powers @ np.abs(polynomial))
+    others = np.abs(w[:, None] - w[None]) + np.eye(4)
+    divisor = np.abs(second) - error
+    with np.errstate(all="ignore"):
+        radius = 4.0 * (np.abs(np.polyval(polynomial, w)) + loss) / (divisor * others.prod(axis=1))
+    if divisor <= 0 or not np.isfinite(radius).all():
+        return w, False, np.abs(np.abs(w) - 1.0) < _OWN_POLE
+    apart = others > 2.0 * (radius[:, None] + radius[None])
+    np.fill_diagonal(apart, True)
+    away = np.abs(np.abs(w) - 1.0) > 1.1 * radius
+    # the mirror image 1/w̄ of a root in a small disc about the circle is in the same disc
+    on_circle = ~away
+    alone = (radius < 0.1).all()
+    return w, bool(apart.all() and alone), on_circle
+
+
+def sampled_dyads(points: ComplexArray, angles: Array, samples: int = _SAMPLES) -> DyadSet:
+    """Proved dyads through four poses (4,), (4,), whose fixed pivots are spread over all arcs.
+
+    Also the PR and RP dyads, which are single.
+    """
+    curve = centre_points(points, angles)
+    if curve is None or not curve.arcs:
+        directions = np.linspace(0.0, np.pi, samples, endpoint=False)
+    else:
+        total = sum(arc.stop - arc.start for arc in curve.arcs)
+        parts = []
+        for arc in curve.arcs:
+            count = max(4, round(samples * (arc.stop - arc.start) / total))
+            share = 0.5 - 0.5 * np.cos((2 * np.arange(count) + 1) * np.pi / (2 * count))
+            parts.append(arc.start + share * (arc.stop - arc.start))
+        directions = np.concatenate(parts)
+    vertex = complex(points.mean()) if curve is None else curve.pole
+    many = len(directions)
+    lines = np.stack([np.full(many, vertex), np.exp(1j * directions)], axis=1)
+    d, theta = np.tile(points, (many, 1)), np.tile(angles, (many, 1))
+    solved = solve_on_lines(d, theta, lines)
+    found = DyadSet.of_solutions(solved, PoseSet(points=d, turns=np.exp(1j * theta)))
+    own = np.abs(found.fixed - vertex) > _OWN_POLE * float(np.abs(points - points.mean()).max())
+    pinned = found.take((found.kind == 0) & own)
+    # every line finds the same RP dyad
+    sliding = np.flatnonzero(found.kind == 2)[:1]
+    return DyadSet.joined([pinned, found.take(sliding)]).of_one_task()
+
+
+def dyads_with_pivots(
+    pivots: ComplexArray, points: ComplexArray, angles: Array, reach: float
+) -> DyadSet:
+    """The RR dyads through four poses (4,), (4,) whose fixed pivots are nearest to given ones (K,).
+
+    On a line through a given pivot the four poses determine the dyad: the square system is that of
+    :func:`solve_on_lines`, with its proof. Of several lines the nearest proved pivot counts, which
+    differs from the given one by as much as that is off the curve. A pivot without a dyad within
+    ``reach`` has none here.
+    """
+    found = []
+    for pivot in pivots:
+        lines = np.stack([np.full(len(_THROUGH), pivot), _THROUGH], axis=1)
+        d, theta = np.tile(points, (len(lines), 1)), np.tile(angles, (len(lines), 1))
+        solved = solve_on_lines(d, theta, lines)
+        dyads = DyadSet.of_solutions(solved, PoseSet(points=d, turns=np.exp(1j * theta)))
+        away = np.abs(dyads.fixed - pivot)
+        near = np.flatnonzero((dyads.kind == 0) & (away < reach))
+        order = np.lexsort([away[near], dyads.refusal[near] != Refusal.NONE.code])
+        found.append(dyads.take(near[order[:1]]))
+    return DyadSet.joined(found).of_one_task()
+
+
+def sliding_dyad(points: ComplexArray, angles: Array) -> DyadSet:
+    """The PR dyad through four poses (4,), (4,); none where it is not determined."""
+    poses = NormalPoses.of(points[None], angles[None])
+    # G, B and C of the dyad's equation, with a = A = 0
+    _, sizes, right = np.linalg.svd(poses.rows()[0][:, 3:])
+    g, b, c = right[-1][0] + 1j * right[-1][1], right[-1][2] + 1j * right[-1][3], right[-1][4]
+    size, centre = float(poses.size[0]), complex(poses.centre[0])
+    if sizes[-1] < RANK_TOLERANCE * sizes[0] or abs(g) < RANK_TOLERANCE:
+        nowhere = np.full(1, np.nan + 0j)
+        return DyadSet.made(1, nowhere, nowhere, np.array([np.inf]))
+    normal = g / abs(g)
+    # a singular vector moves by the roundings of the matrix over the smallest singular value
+    error = size * _LOSS * sizes[0] / sizes[-1] * (1.0 + abs(b / g)) / abs(g)
+    made = DyadSet.made(
+        1,
+        np.array([size * b / g.conjugate()]),
+        np.array([centre + size * normal * 0.5 * c / abs(g)]),
+        np.array([error]),
+        np.array([normal]),
+    )
+    return made.with_misses(PoseSet(points=points[None], turns=np.exp(1j * angles)[None]))

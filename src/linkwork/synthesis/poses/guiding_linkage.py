@@ -1,0 +1,306 @@
+"""A design as the description of an ordinary mechanism, in file units."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from itertools import combinations
+
+import numpy as np
+
+from linkwork.core.foundation.arrays import Array
+from linkwork.core.foundation.names import GROUND
+from linkwork.core.foundation.units import FULL_TURN, AngleUnit
+from linkwork.core.mechanism.inputs import Input
+from linkwork.core.mechanism.linkage import Linkage
+from linkwork.core.mechanism.part.guides import Slider
+from linkwork.core.results.listing.motion_listing import significant
+from linkwork.synthesis.loops.candidates import Candidates, Drive, LoopKind
+from linkwork.synthesis.loops.limits import cross, dot, meeting
+from linkwork.synthesis.tasks.task import Task
+
+__all__ = ["Design", "linkage_of"]
+
+_STEP = math.pi / 180.0  # of an angle [rad]
+_STEPS = 100  # of a displacement
+_ON_LINE = 1e-9  # of a coupler's length: a pivot on its line
+_SAME_TURN = 1e-12  # relative: the rounding of a few angles
+_GUIDE = "slide"
+_GROUND_POINTS = ("A0", "B0", "U", "V", "S", "T")
+_MOST_LISTED = 9  # positions whose inputs are listed
+_DIGITS = 6
+
+
+@dataclass(frozen=True, kw_only=True)
+class Design:
+    """One design at its first position, with its driven range.
+
+    Parameters
+    ----------
+    kind : LoopKind
+    drive : Drive
+    points : Mapping[str, complex]
+        A0, B0, A, B, P of a four-bar; A0, S, T, A, B, P of a slider-crank, with S, T on the line of
+        the slider, S where its displacement is zero; A0, B0, A, B, P of an inverted one, with B on
+        the coupler's line, and C, the foot of A, if A is not on it. U, V on the line of a slider at
+        A; K, where the lines of an Oldham coupling cross [length].
+    inputs : tuple of float
+        The input at the positions, unwrapped [rad or length].
+    start, stop : float
+        The driven range [rad or length].
+    backward : tuple of Drive
+        Links whose angle is measured from the moving pivot to the fixed one.
+    output : float, optional
+        What a function has for the output at the first position, if that is not the output of the
+        design [rad or length].
+    """
+
+    kind: LoopKind
+    drive: Drive
+    points: dict[str, complex]
+    inputs: tuple[float, ...]
+    start: float
+    stop: float
+    backward: tuple[Drive, ...] = ()
+    output: float | None = None
+
+    @classmethod
+    def of(
+        cls,
+        given: Candidates,
+        k: int,
+        drive: Drive,
+        inputs: Array,
+        ends: Array,
+        zero: tuple[float, float] | None = None,
+    ) -> Design:
+        """The k-th of some designs.
+
+        ``inputs`` (N,), ``ends`` (2,): at the positions, and of the driven range; ``zero``: the
+        angles of crank and rocker at the first position as a task measures them, opposite to the
+        links where a length is negative, or the displacement of a slider [rad or length].
+        """
+        points = {
+            "A0": given.fixed_a[k],
+            "B0": given.fixed_b[k],
+            "A": given.moving_a[k, 0],
+            "B": given.moving_b[k, 0],
+            "P": given.guided[k, 0],
+        }
+        backward = []
+        if zero is not None:
+            sides = (Drive.A0, "A", "A0", zero[0]), (Drive.B0, "B", "B0", zero[1])
+            pinned = sides if given.kind is LoopKind.FOUR_BAR else sides[:1]
+            for side, moving, fixed, angle in pinned:
+                if ((points[moving] - points[fixed]) * np.exp(-1j * angle)).real < 0:
+                    backward.append(side)
+        guides = (
+            ("B0", "S", "T", given.direction[k], given.moving_b[k]),
+            ("A0", "U", "V", given.direction_a[k], given.moving_a[k]),
+        )
+        for name, start, end, direction, moving in guides:
+            if name not in given.kind.pivots:
+                line = points.pop(name)
+                along = dot(direction, moving - line)
+                reach = max(np.abs(along).max(), abs(points["B"] - points["A"]))
+                points |= {start: line, end: line + reach * direction}
+        if given.kind is LoopKind.OLDHAM:
+            own = (points["A0"], given.lines_a[k, 0], points["B0"], given.lines[k, 0])
+            points["K"] = meeting(*map(np.asarray, own))
+        elif given.kind.body_line:
+            # the foot of A on the line of the coupler, if A is not on it
+            line = given.lines[k, 0]
+            away = cross(line, points["B"] - points["A"])
+            if abs(away) > _ON_LINE * abs(points["B"] - points["A"]):
+                points["C"] = points["A"] + 1j * away * line
+        if drive.turns:
+            # measured as the file measures it, in the first turn to begin with or as the task does
+            shift = np.pi if drive in backward else 0.0
+            turns = np.floor((ends[0] + shift) / FULL_TURN + _SAME_TURN)
+            if zero is not None and drive is Drive.A0:
+                turns = np.round((inputs[0] + shift - zero[0]) / FULL_TURN)
+            shift -= FULL_TURN * turns
+            inputs, ends = inputs + shift, ends + shift
+        return cls(
+            kind=given.kind,
+            drive=drive,
+            points={name: complex(point) for name, point in points.items()},
+            inputs=tuple(inputs.tolist()),
+            start=float(ends[0]),
+            stop=float(ends[1]),
+            backward=tuple(backward),
+            output=zero and zero[1],
+        )
+
+
+def linkage_of(design: Design, task: Task, name: str, output: str = "") -> Linkage:
+    """The description of a design for a task; the driven link is the crank.
+
+    ``output``: the name of the output of a function, whose structural error is an output of the
+    mechanism.
+    """
+    if not design.kind.has_crank:
+        return _guided(design, task, name)
+    z, own = design.points, _ground_names(design)
+    crank, rocker = _bar(design, Drive.A0), _bar(design, Drive.B0)
+    if design.drive is Drive.B0:
+        crank, rocker = rocker, crank
+    guided = next((key for key in ("A", "B") if z[key] == z["P"]), "P")
+    coupler = ("A", "B") if guided != "P" else ("A", "B", "P")
+    foot = ("C",) if "C" in z else ()
+    bars = [crank, *combinations(coupler, 2)]
+    links: dict[str, tuple[str, ...]] = {
+        GROUND: ("A0", "B0"),
+        "crank": crank,
+        "coupler": coupler,
+        "rocker": rocker,
+    }
+    sliders: tuple[Slider, ...] = ()
+    if design.kind is LoopKind.FOUR_BAR:
+        bars.append(rocker)
+    elif design.kind is LoopKind.INVERTED:
+        del links["rocker"]
+        links |= {
+            "crank": _bar(design, Drive.A0),
+            "coupler": (*coupler, *foot),
+            "block": ("B0",),
+        }
+        bars = [_bar(design, Drive.A0), *combinations(coupler, 2)]
+        bars += [(end, "C") for end in "AB" if foot]
+        line = ("C" if foot else "A", "B")
+        sliders = (Slider(name=_GUIDE, link="block", points=("B0",), on="coupler", line=line),)
+    else:
+        del links["rocker"]
+        start, end = (own[key] for key in "ST")
+        links |= {GROUND: _distinct("A0", start, end), "block": ("B",)}
+        sliders = (Slider(name=_GUIDE, link="block", points=("B",), on=GROUND, line=(start, end)),)
+    formula = _error_formula(design, task, output)
+    return Linkage(
+        name=name,
+        purpose=_purpose(design, task),
+        length=task.length,
+        angle=task.angle,
+        points=_places(design, guided),
+        links=links,
+        lengths={f"{one} {other}": abs(z[other] - z[one]) for one, other in bars},
+        sliders=sliders,
+        inputs=(_input(design, task.angle),),
+        trace=(guided,),
+        outputs={"structural_error": formula} if formula else {},
+    )
+
+
+def _ground_names(design: Design) -> dict[str, str]:
+    """The name of every ground point: of points at one place, such as a pivot on the line of a
+    slider, that of the first.
+    """
+    z, first = design.points, dict[complex, str]()
+    return {key: first.setdefault(z[key], key) for key in _GROUND_POINTS if key in z}
+
+
+def _distinct(*names: str) -> tuple[str, ...]:
+    return tuple(dict.fromkeys(names))
+
+
+def _places(design: Design, guided: str) -> dict[str, tuple[float, float]]:
+    """The points of the file: without P where that is a pivot."""
+    names = _ground_names(design)
+    return {
+        key: (place.real, place.imag)
+        for key, place in design.points.items()
+        if names.get(key, key) == key and (key != "P" or guided == "P")
+    }
+
+
+def _error_formula(design: Design, task: Task, output: str) -> str:
+    """The structural error of a function, whose start angles may have been found."""
+    goal, unit = task.function, task.angle.from_radians
+    if not output or goal is None or design.drive is not Drive.A0:
+        return ""
+    if goal.free:
+        begin = _first_output(design) if design.output is None else design.output
+        begin = begin if design.kind is LoopKind.SLIDER_CRANK else unit(begin)
+        goal = goal.begun_at(unit(design.inputs[0]), begin)
+    return goal.formula("crank", output, task.angle)
+
+
+def _first_output(design: Design) -> float:
+    """The angle of the rocker, or the displacement of the slider [rad or length]."""
+    z = design.points
+    if design.kind is LoopKind.FOUR_BAR:
+        return float(np.angle(z["B"] - z["B0"]))
+    line = z["T"] - z["S"]
+    return float(dot(np.asarray(line / abs(line)), np.asarray(z["B"] - z["S"])))
+
+
+def _guided(design: Design, task: Task, name: str) -> Linkage:
+    """The description of a mechanism of two guides."""
+    z, kind = design.points, design.kind
+    guided = next((key for key in ("A", "B") if z[key] == z["P"]), "P")
+    corners = ("A", "B") if guided != "P" else ("A", "B", "P")
+    foot = tuple(key for key in ("C", "K") if key in z)
+    names = _ground_names(design)
+    ground = [names[key] for key in (*kind.pivots, *"UVST") if key in z]
+    ends = {"A": "K", "B": foot[0] if foot else "A"}  # of the body's lines through A and B
+    sliders = []
+    for moving, pivot, line, own in (("A", "A0", "UV", "slide_a"), ("B", "B0", "ST", _GUIDE)):
+        block = "block_a" if moving == "A" else "block"
+        if pivot in kind.pivots:
+            way, carried, on = (ends[moving], moving), pivot, "coupler"
+        else:
+            way, carried, on = (names[line[0]], names[line[1]]), moving, GROUND
+        sliders.append(Slider(name=own, link=block, points=(carried,), on=on, line=way))
+    bars = [*combinations(corners, 2), *((end, key) for key in foot for end in "AB")]
+    return Linkage(
+        name=name,
+        purpose=_purpose(design, task),
+        length=task.length,
+        angle=task.angle,
+        points=_places(design, guided),
+        links={
+            GROUND: _distinct(*ground),
+            "coupler": (*corners, *foot),
+            **{slider.link: slider.points for slider in sliders},
+        },
+        lengths={f"{one} {other}": abs(z[other] - z[one]) for one, other in bars},
+        sliders=tuple(sliders),
+        inputs=(_input(design, task.angle),),
+        trace=(guided,),
+    )
+
+
+def _purpose(design: Design, task: Task) -> str:
+    """What it is for; with the inputs at its positions, if they are few."""
+    if task.function is not None or len(design.inputs) > _MOST_LISTED:
+        return task.purpose
+    turns = design.drive.turns
+    driven = _input(design, task.angle)
+    values = [task.angle.from_radians(v) if turns else v for v in design.inputs]
+    listed = ", ".join(significant(value, _DIGITS) for value in values)
+    unit = task.angle.value if turns else task.length
+    return task.purpose.replace(";", f" at {driven.link or driven.slider} = {listed} {unit};", 1)
+
+
+def _bar(design: Design, side: Drive) -> tuple[str, str]:
+    """The ends of a link, in the direction in which its angle is measured."""
+    fixed, moving = ("A0", "A") if side is Drive.A0 else ("B0", "B")
+    return (moving, fixed) if side in design.backward else (fixed, moving)
+
+
+def _input(design: Design, angle: AngleUnit) -> Input:
+    span = design.stop - design.start
+    if not design.drive.turns:
+        step = span / _STEPS
+        own = "slide_a" if design.drive is Drive.SLIDER_A else _GUIDE
+        return Input(slider=own, start=design.start, stop=design.stop, step=step)
+    start, stop = angle.from_radians(design.start), angle.from_radians(design.stop)
+    count = max(1, math.ceil(abs(span) / _STEP - _SAME_TURN))
+    if math.isclose(abs(span), FULL_TURN, rel_tol=_SAME_TURN):
+        stop = start + math.copysign(angle.turn, span)
+    # so many equal steps that the last row is the last position
+    driven = "crank"
+    if design.kind.body_line and design.drive is Drive.B0:
+        driven = "block"
+    elif not design.kind.has_crank:
+        driven = "block_a"
+    return Input(link=driven, start=start, stop=stop, step=(stop - start) / count)

@@ -1,0 +1,281 @@
+"""The tracker of solution paths: compiled where that saves time, else in batches of NumPy.
+
+NumPy steps all paths of a batch at once, and a round takes nearly as long for one path as for many:
+of paths that creep towards infinity, rounds tell the cost, not their number.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from functools import cache
+from importlib.util import find_spec
+from pathlib import Path
+from typing import Protocol
+
+import numpy as np
+
+from linkwork.circuits.homotopy.monodromy import Family, Member, first_of_each
+from linkwork.circuits.homotopy.parameter_roots import ParameterRoots, roots_at
+from linkwork.circuits.homotopy.path_tracking import (
+    QUICK,
+    SURE,
+    ParameterPath,
+    ParametrizedSystem,
+    PathOptions,
+    Paths,
+    StraightHomotopy,
+    Tracker,
+    polish_ends,
+    track,
+)
+from linkwork.core.foundation.arrays import AnyArray, ComplexArray, IndexArray
+from linkwork.core.foundation.errors import InputError
+from linkwork.core.foundation.loading import cores
+from linkwork.core.foundation.rounding import ALMOST_REAL
+from linkwork.core.foundation.statuses import Completeness
+from linkwork.families import paths
+from linkwork.families.compiled.code_cache import PATH_LOOP, is_compiled, is_loaded
+from linkwork.synthesis.precision.four_bar_positions import FourBarPositions
+from linkwork.synthesis.precision.positions import PrecisionPositions
+from linkwork.synthesis.precision.problem import CONDITIONS, PrecisionProblem, cognates
+from linkwork.synthesis.precision.proofs import prove_linkages
+
+# A path takes about 0.3 ms compiled and 2 ms in NumPy, where a round of a batch takes 0.8 ms.
+_FEW = 100  # paths: recording a program takes as long in NumPy
+_LOADING = 500  # paths in NumPy take as long as loading compiled code,
+_COMPILING = 4000  # and these as long as compiling it
+_AT_A_TIME = 400  # compiled, between reports
+_ROUND = 0.4  # paths in NumPy: the least time of a round
+_KERNELS = dict[ParametrizedSystem, "paths.PathKernel"]()
+_FOLLOWED = [0.0]  # paths that a process has followed in NumPy
+
+
+class CompiledTracker:
+    """Follows solution paths in the lanes of compiled code, on all cores."""
+
+    def __init__(self, threads: int | None = None) -> None:
+        self.threads = threads or cores()
+
+    def __call__(self, path: ParameterPath, start: ComplexArray, options: PathOptions, /) -> Paths:
+        """Follow every start (B, n), a solution at σ = 1, to σ = 0."""
+        kernel = _KERNELS.get(path.system)
+        if kernel is None:
+            kernel = _KERNELS[path.system] = paths.PathKernel(StraightHomotopy(path.system))
+        more = SURE if options is QUICK else None
+        w, near, state, attempts = kernel.follow(path.ends, start, options, self.threads, more)
+        return Paths(w=w, near=near, state=state, steps=int(attempts.max(initial=0)))
+
+
+class SparingTracker:
+    """Follows paths in NumPy until compiled code saves time: asked anew before every batch.
+
+    Parameters
+    ----------
+    expected : int
+        Paths that will be followed, unless some need more care.
+    progress : callable, optional
+        Called with the finished fraction of each batch; may raise an error to end the work.
+    """
+
+    def __init__(self, expected: int, progress: Callable[[float], None] | None = None) -> None:
+        self._expected, self._progress = expected, progress
+
+    def __call__(self, path: ParameterPath, start: ComplexArray, options: PathOptions, /) -> Paths:
+        """Follow every start (B, n), a solution at σ = 1, to σ = 0."""
+        if compiled_pays(self._expected):
+            return self._compiled(path, start, options)
+        found = track(path, start, options, self._progress)
+        _FOLLOWED[0] += max(len(start), _ROUND * found.steps)
+        return found
+
+    def _compiled(self, path: ParameterPath, start: ComplexArray, options: PathOptions) -> Paths:
+        follow, count = CompiledTracker(), math.ceil(len(start) / _AT_A_TIME)
+        if self._progress is None or count < 2:
+            return follow(path, start, options)
+        found = []
+        for part in np.array_split(start, count):
+            found.append(follow(path, part, options))
+            self._progress(len(found) / count)
+        return Paths(
+            w=np.concatenate([one.w for one in found]),
+            near=np.concatenate([one.near for one in found]),
+            state=np.concatenate([one.state for one in found]),
+            steps=max(one.steps for one in found),
+        )
+
+
+def compiled_pays(expected: int) -> bool:
+    """Whether compiled code saves time for this many paths, after those followed in NumPy so far.
+
+    Where there is no Numba, NumPy follows all of them.
+    """
+    if expected < _FEW or find_spec("numba") is None:
+        return False
+    if is_loaded(PATH_LOOP):
+        return True
+    least = _LOADING if is_compiled(PATH_LOOP) else _COMPILING
+    return expected + _FOLLOWED[0] >= least
+
+
+# ----------------------------------------------------------------------
+# Solved random members of the families of precision positions, shipped with the package.
+#
+# ``scripts/start_linkages`` computes them by monodromy and confirms them by the trace test. The
+# solutions are kept in single precision and polished when they are read, so that no file is trusted
+# with a number.
+
+
+SHIPPED = Path(__file__).with_name("start_linkages.npz")
+#: All families with a point; poses alone are solved by dyads.
+SHIPPED_PROBLEMS = tuple(
+    PrecisionProblem(poses=poses, points=points, pivots=pivots)
+    for pivots in range(3)
+    for poses in range(CONDITIONS)
+    if (points := CONDITIONS - 2 * poses - 2 * pivots) > 0
+)
+
+
+class NamedFamily(Family, Protocol):
+    """A family whose solved member is shipped."""
+
+    @property
+    def name(self) -> str:
+        """The name of its start set."""
+
+    @property
+    def last(self) -> slice:
+        """The parameters of the last equation."""
+
+
+def as_arrays(problem: NamedFamily, member: Member) -> dict[str, AnyArray]:
+    """A solved member as arrays of the shipped file."""
+    name = problem.name
+    return {
+        f"{name}.parameters": member.parameters,
+        f"{name}.x": member.x.astype(np.complex64),
+    }
+
+
+@cache
+def start_member(problem: PrecisionProblem) -> Member:
+    """The shipped solved member of a family; raises like :func:`stored_member`."""
+    return stored_member(problem, SHIPPED)
+
+
+def stored_member(problem: NamedFamily, path: Path) -> Member:
+    """The solved member of a family in a shipped file.
+
+    Raises
+    ------
+    InputError
+        If the installation is damaged: the file lacks the family, or has wrong numbers.
+    """
+    try:
+        with np.load(path) as stored:
+            return member_of_arrays(problem, stored)
+    except (OSError, KeyError, ValueError):
+        raise InputError(f"{path} is damaged: install Linkwork again") from None
+
+
+def member_of_arrays(problem: NamedFamily, arrays: Mapping[str, AnyArray]) -> Member:
+    """The member of :func:`as_arrays`, its solutions polished.
+
+    Raises
+    ------
+    KeyError, ValueError
+        If these are no arrays of a solved member.
+    """
+    parameters, x = (arrays[f"{problem.name}.{field}"] for field in ("parameters", "x"))
+    path = ParameterPath(system=problem, start=parameters, goal=parameters)
+    sharp = polish_ends(path, x.astype(complex))
+    if not sharp.regular.all() or len(
+        first_of_each(problem.fingerprint(sharp.x, parameters))
+    ) < len(x):
+        raise ValueError("some solutions are none, or equal")
+    return Member(parameters=parameters, x=sharp.x)
+
+
+# ----------------------------------------------------------------------
+# All four-bars through precision positions: solved, counted, and proved where they are real.
+
+
+_SEED = 19_920_301  # of detours; every run gives the same answer
+_LEAST_SIZE = 0.1  # of the size of the positions: numbers are compared relative to at least this
+
+
+@dataclass(frozen=True, kw_only=True, eq=False, repr=False)
+class PrecisionFourBars(FourBarPositions):
+    """Real four-bars through positions, and how many solutions there are.
+
+    Parameters
+    ----------
+    triple : (D,) int
+        Equal for four-bars that are cognates of each other.
+    real : int
+        Real solutions, a triple of cognates counted once.
+    roots : ParameterRoots
+        All complex solutions, and the outcome of every path.
+    """
+
+    triple: IndexArray
+    real: int
+    roots: ParameterRoots
+
+    def __repr__(self) -> str:
+        roots = self.roots
+        return (
+            f"Four-bars through {self.guided.shape[1]} positions\n"
+            f"  solutions {len(roots.x):5}   of {roots.paths} paths; {roots.at_infinity} to "
+            f"infinity, {len(roots.singular)} singular, {roots.lost} lost\n"
+            f"  real      {self.real:5}\n"
+            f"  four-bars {len(self):5}   {int(self.proved.sum())} of them proved\n"
+            f"  {self.completeness.value}"
+        )
+
+    @property
+    def completeness(self) -> Completeness:
+        """Whether all four-bars are listed."""
+        return self.roots.graded(self.proved)
+
+
+def four_bars_through(
+    given: PrecisionPositions,
+    tracker: Tracker | None = None,
+    *,
+    member: Member | None = None,
+    alike: int = 1,
+    progress: Callable[[float], None] | None = None,
+) -> PrecisionFourBars:
+    """All four-bars through positions that determine a finite number of them.
+
+    Parameters
+    ----------
+    given : PrecisionPositions
+        With two conditions for every pose and every fixed pivot, one for every point and length,
+        not counting the first position: eight in all, at least one of them a point.
+    tracker : Tracker, optional
+        By default compiled where that saves time.
+    member : Member, optional
+        A solved member to start from, needed with given lengths; by default the shipped one.
+    alike : int
+        How many tasks of this kind will be solved, this one included.
+    progress : callable, optional
+        Called with the finished fraction of the paths; may raise an error to end the work.
+    """
+    problem, size = given.problem, given.size
+    member = member or start_member(problem)
+    goal, rng = given.parameters(size), np.random.default_rng(_SEED)
+    tracker = tracker or SparingTracker(alike * len(member.x), progress)
+    roots = roots_at(problem, member, goal, tracker, rng)
+    apart = np.abs(problem.mirrored(roots.x) - roots.x) / (_LEAST_SIZE + np.abs(roots.x))
+    real = problem.linkages(roots.x[apart.max(axis=1, initial=0.0) < ALMOST_REAL], goal)
+    count = len(real)
+    triple = np.arange(count)
+    if not (problem.poses or problem.lengths or problem.pivots == 2):
+        # with one pivot given the second cognate, which lacks it, is none
+        others = cognates(real)[: 2 - problem.pivots]
+        real, triple = np.concatenate([real, *others]), np.tile(triple, 1 + len(others))
+    proofs = prove_linkages(given, real * size)
+    return PrecisionFourBars.of(given, proofs, triple=triple, real=count, roots=roots)

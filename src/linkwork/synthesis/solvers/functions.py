@@ -1,0 +1,395 @@
+"""Structural errors of four-bars and slider-cranks, and largest ones that are equal."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+
+from linkwork.core.foundation.arrays import Array, BoolArray, IndexArray
+from linkwork.core.foundation.rounding import EPSILON
+from linkwork.core.foundation.units import FULL_TURN
+from linkwork.synthesis.improvement.curve_fit import CurveConstraints
+from linkwork.synthesis.improvement.curves import CurveGoal, FourBarCurves, SliderCrankCurves
+from linkwork.synthesis.improvement.fit_problem import POWERS, largest_misses, powered
+from linkwork.synthesis.lane_least_squares import Box, LaneFit, Residuals, minimise, starts_of
+from linkwork.synthesis.loops.limits import dot
+from linkwork.synthesis.tasks.conditions import Wishes
+
+#: Structural errors (K,) of parameters (n,), and derivatives (K, n); NaN where a loop is open.
+Errors = Callable[[Array], tuple[Array, Array]]
+
+_MOST_STEPS = 100
+_SMALLEST_STEP = 1e-13  # relative: Newton steps end in rounding
+_REGULAR = 1e-7  # relative: far above the rounding of derivatives
+_LEVEL = 1e-9  # by which the largest error may exceed that of the reference points
+
+
+def rocker_errors(inputs: Array, outputs: Array, side: float | Array) -> Errors:
+    """The errors of a rocker's angle, for parameters a, b, c of a four-bar with ground 1.
+
+    ``inputs``, ``outputs``: (K,) [rad]; ``side``: the sign of (B - A) × (B - B0). With lanes
+    (D, K), sides (D, 1) and parameters (3, D, 1), errors are (D, K). The last derivative is that
+    by the input.
+    """
+
+    def errors(lengths: Array) -> tuple[Array, Array]:
+        a, b, c = lengths
+        crank = np.exp(1j * inputs)
+        base = 1.0 - a * crank
+        square = np.abs(base) ** 2
+        along = 0.5 * (square + c**2 - b**2)
+        with np.errstate(invalid="ignore", divide="ignore"):
+            across = np.sqrt(square * c**2 - along**2)
+            coupler = base * (along + 1j * side * across) / square
+            # B - B0 = A + coupler - 1, divided by a signed length
+            rocker = (coupler - base) / b
+            found = np.angle(rocker)
+            wrong = np.mod(found - outputs + np.pi, 2.0 * np.pi) - np.pi
+            slope = b * dot(coupler, 1j * rocker)
+            gradient = [dot(coupler, crank), -dot(coupler, rocker), c + 0.0 * wrong]
+            gradient.append(dot(coupler, 1j * a * crank))
+            return wrong, np.stack([part / slope for part in gradient], axis=-1)
+
+    return errors
+
+
+def slider_errors(inputs: Array, outputs: Array, side: float | Array) -> Errors:
+    """The errors of a slider's displacement, for parameters a, e, c: crank, offset and rod.
+
+    ``inputs`` (K,) [rad], ``outputs`` (K,) [length]; ``side``: the sign of (B - A) along the line.
+    Lanes and derivatives as of :func:`rocker_errors`.
+    """
+
+    def errors(lengths: Array) -> tuple[Array, Array]:
+        a, e, c = lengths
+        crank = np.exp(1j * inputs)
+        height = e - a * crank.imag
+        with np.errstate(invalid="ignore", divide="ignore"):
+            reach = side * np.sqrt(c**2 - height**2)
+            wrong = a * crank.real + reach - outputs
+            gradient = [crank.real + height * crank.imag / reach, -height / reach, c / reach]
+            gradient.append(a * (height * crank.real / reach - crank.imag))
+            return wrong, np.stack(gradient, axis=-1)
+
+    return errors
+
+
+def levels_minimise(errors: Errors, x: Array, points: list[int]) -> bool:
+    """Whether n + 1 equal errors, the largest ones, are a strict local minimum of the largest one.
+
+    They are if every step enlarges one of them: a sum of their derivatives with positive weights
+    is zero, and n of the derivatives are independent (Kuhn and Tucker).
+    """
+    e, jacobian = errors(x)
+    if np.abs(e).max() > np.abs(e[points]).min() * (1.0 + _LEVEL) + EPSILON:
+        return False
+    rows = np.sign(e[points])[:, None] * jacobian[points]
+    scale = np.linalg.norm(rows, axis=0)
+    if not scale.all():  # errors of zero, too: there is nothing to make smaller
+        return False
+    rows = rows / scale
+    _, values, turned = np.linalg.svd(rows.T)
+    weights = turned[-1] * np.sign(turned[-1].sum())
+    return bool(values[-1] > _REGULAR * values[0] and weights.min() > _REGULAR)
+
+
+def levelled(errors: Errors, start: Array, points: list[int]) -> tuple[Array, float] | None:
+    """The parameters for which errors at the points are ±E, and E."""
+    x = start.copy()
+    e, jacobian = errors(x)
+    signs = np.sign(e[points])
+    for _ in range(_MOST_STEPS):
+        matrix = np.column_stack([jacobian[points], -signs])
+        try:
+            change = np.linalg.solve(matrix, -e[points])
+        except np.linalg.LinAlgError:
+            return None
+        x = x + change[:-1]
+        e, jacobian = errors(x)
+        if not np.isfinite(e).all():
+            return None
+        if np.abs(change[:-1]).max() <= _SMALLEST_STEP * np.abs(x).max():
+            break
+    return x, float(np.abs(e[points]).max())
+
+
+# ----------------------------------------------------------------------
+# Wishes of a task of functions as constraints on the lanes of its fits, eq. (155).
+
+
+_MARGIN = 1e-4  # of lengths, relatively: what multipliers leave
+
+
+class FunctionWishes:
+    """The constraints of D lanes, which have crank, rocker or offset, coupler, and both starts.
+
+    ``u`` (N,): inputs [rad]; ``size``: of lengths, 1 with a four-bar's ground; ``weights``: those
+    of rounds, none without wishes.
+    """
+
+    def __init__(self, wishes: Wishes, u: Array, size: float, slides: bool, lanes: int) -> None:
+        asked = wishes.range
+        #: The driven range, unless it is that of the inputs, and moves with their start.
+        self.range = None if asked is None or asked.turn else (asked.start, asked.stop)
+        self.ends = sorted(self.range or (float(u.min()), float(u.max())))
+        self.kind = SliderCrankCurves if slides else FourBarCurves
+        self.columns = [2, 4, 3] if slides else [4, 6, 5]
+        goal = CurveGoal(
+            points=np.array([0.0, 2.0 * size], dtype=complex),
+            closed=False,
+            turns_fully=asked is not None and asked.turn,
+            transmission=wishes.transmission,
+            shortest=wishes.shortest * (1.0 + _MARGIN),
+            longest=wishes.longest * (1.0 - _MARGIN),
+            ratio=wishes.ratio * (1.0 - _MARGIN),
+        )
+        self.constraints = CurveConstraints(self.kind, goal, lanes)
+        wanted = asked or goal.transmission or goal.shortest
+        wanted = wanted or min(goal.longest, goal.ratio) < np.inf
+        self.weights = (10.0, 30.0, 30.0, 100.0, 100.0) if wanted else ()
+
+    def _loops(self, x: Array) -> tuple[Array, Array, Array]:
+        """Dimensions (D, P) of the same loops as curves, signs of theirs here, and the angles of
+        the crank where transmission angles may be least.
+        """
+        signs = np.where(x[:, :3] < 0.0, -1.0, 1.0)
+        loops = np.zeros((len(x), len(self.kind.names)))
+        if self.kind is FourBarCurves:
+            loops[:, 2] = 1.0
+        else:
+            signs[:, 1] = 1.0  # of an offset
+        loops[:, self.columns] = signs * x[:, :3]
+        turned = 0.25 * FULL_TURN * (1.0 - signs[:, :1]) + (0.0 if self.range else x[:, 3:4])
+        middle, half = turned + 0.5 * sum(self.ends), 0.5 * (self.ends[1] - self.ends[0])
+        extreme = self.kind(np.ones(1)).extreme(loops)[:, None] + [0.0, 0.5 * FULL_TURN]
+        away = (extreme - middle + 0.5 * FULL_TURN) % FULL_TURN - 0.5 * FULL_TURN
+        return loops, signs, middle + np.clip(away, -half, half)
+
+    def broken(self, x: Array, lanes: IndexArray) -> tuple[Array, Array]:
+        """How far wishes are broken, (D, K), and by the parameters, (D, K, 5)."""
+        if not self.weights:
+            return np.zeros((len(x), 0)), np.zeros((len(x), 0, 5))
+        loops, signs, angles = self._loops(x)
+        h, slope = self.constraints.residuals(loops, lanes)
+        by_start = np.zeros_like(h)
+        found = self.constraints.at_points(loops, angles, lanes)
+        if found is not None:
+            h, slope = np.append(h, found[0], axis=1), np.append(slope, found[1], axis=1)
+            by_start = np.append(by_start, 0.0 * found[2] if self.range else found[2], axis=1)
+        by_x = slope[:, :, self.columns] * signs[:, None]
+        return h, np.concatenate([by_x, by_start[:, :, None], 0.0 * h[:, :, None]], axis=2)
+
+    def update(self, x: Array, weight: float) -> None:
+        """New multipliers for all lanes at x, and the next weight."""
+        loops, _, angles = self._loops(x)
+        self.constraints.update(loops, angles, np.zeros(2, dtype=complex), np.arange(len(x)))
+        self.constraints.weigh(weight)
+
+
+# ----------------------------------------------------------------------
+# Fits of functions: dimensions whose output follows pairs best, by least squares or minimax.
+#
+# Each lane has the dimensions of a four-bar (crank a, rocker b, coupler c, ground 1) or
+# slider-crank (crank a, offset e, rod c), then the angle that is added to the inputs, and the angle
+# or displacement that is added to the outputs: 0 where the starts are given, free where only
+# differences count. With given starts a negative crank or rocker points the other way.
+
+
+_STEPS, _POWER_STEPS = 150, 40
+_LANES = 120  # of the starts, those with the smallest sums of squares
+_KEPT = 24  # lanes that minimise the largest miss
+_FAR = 1e3  # ratios of lengths
+_HARDLY = 0.01  # the sine of the least transmission angle
+_ALIKE = 0.02  # relative: lanes that end at one fit, or in one valley
+
+#: The wishes of so many lanes.
+Held = Callable[[int], FunctionWishes]
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class FunctionFits:
+    """D different fits, best first.
+
+    Parameters
+    ----------
+    x : (D, 5)
+    side : (D,)
+        Signs of the loops.
+    wrong : (D, N)
+        Structural errors at the pairs [rad or length].
+    closes : (D,)
+        Whether a loop closes with some transmission angle, or its fit is proved to be minimal.
+    minimal : (D,)
+        Whether a fit is proved to be a local minimum of the largest error, to first order.
+    """
+
+    x: Array
+    side: Array
+    wrong: Array
+    closes: BoolArray
+    minimal: BoolArray
+
+
+class _Lanes:
+    """Structural errors of lanes."""
+
+    def __init__(self, u: Array, v: Array, slides: bool, side: Array, held: Held) -> None:
+        self.u, self.v, self.side, self.wishes = u, v, side, held(len(side))
+        self.make = slider_errors if slides else rocker_errors
+
+    def errors(self, x: Array, lanes: IndexArray) -> tuple[Array, Array]:
+        """Errors (D, N) and their derivatives (D, N, 5)."""
+        u, v = self.u + x[:, 3:4], self.v + x[:, 4:5]
+        made = self.make(u, v, self.side[lanes, None])
+        wrong, by_x = made(x[:, :3].T[:, :, None])
+        return wrong, np.concatenate([by_x, np.full((*wrong.shape, 1), -1.0)], axis=2)
+
+    def residuals(self, x: Array, _t: Array, lanes: IndexArray) -> Residuals:
+        """Errors as rows of one number."""
+        wrong, by_x = self.errors(x, lanes)
+        broken = self.wishes.broken(x, lanes)
+        return Residuals(wrong[:, :, None], by_x[:, :, None], None, *broken)
+
+
+def fit_functions(
+    u: Array,
+    v: Array,
+    starts: tuple[Array, Array],
+    *,
+    slides: bool,
+    minimax: bool,
+    first: tuple[float, float] | None,
+    held: Held,
+    progress: Callable[[float], None] | None = None,
+) -> FunctionFits:
+    """Fits of pairs (N,), (N,) from starts (D, 5) with their sides (D,).
+
+    ``first``: bounds of the angle that is added to the inputs [rad]; ``None``: starts are given.
+    ``held``: the wishes that so many lanes hold.
+    Fits whose loops hardly close are left out but for the best one: most are no local minima, and
+    end where errors would fall on beyond the last loop that closes.
+    """
+    x, side = starts
+    size = float(np.ptp(v)) if slides else 1.0
+    box = _box(size, slides, first)
+    if first is not None and np.isfinite(sum(first)):
+        # whole turns that bring starts nearest to their bounds
+        x[:, 3] += FULL_TURN * np.round((0.5 * sum(first) - x[:, 3]) / FULL_TURN)
+    lanes, x = _Lanes(u, v, slides, side, held), box.inside(x)
+    wrong = lanes.errors(x, np.arange(len(x)))[0]
+    if not np.isfinite(wrong).all(axis=1).any():
+        none = np.zeros(0, dtype=bool)
+        return FunctionFits(x=x[:0], side=side[:0], wrong=wrong[:0], closes=none, minimal=none)
+    total = lanes.residuals(x, x[:, :0], np.arange(len(x))).total
+    some = np.argsort(total, kind="stable")[: min(_LANES, int(np.isfinite(total).sum()))]
+    lanes, side = _Lanes(u, v, slides, side[some], held), side[some]
+    fit = minimise(lanes.residuals, starts_of(x[some], np.zeros((len(some), 0))), box, _STEPS)
+    for weight in lanes.wishes.weights:
+        lanes.wishes.update(fit.x, weight)
+        fit = minimise(lanes.residuals, fit, box, _POWER_STEPS)
+    order = _different(fit.x, fit.total)[:_KEPT]
+    lanes, fit, side = _Lanes(u, v, slides, side[order], held), fit.take(order), side[order]
+    if minimax:
+        fit = _level(lanes, fit, box, progress)
+    x, minimal = fit.x.copy(), np.zeros(len(fit), dtype=bool)
+    for k in range(len(fit)) if minimax else ():
+        sharp, least = _sharpened(lanes, x[k], k, box)
+        if not held(1).broken(sharp[None], np.zeros(1, dtype=np.intp))[0].any():
+            x[k], minimal[k] = sharp, least
+    wrong = lanes.errors(x, np.arange(len(x)))[0]
+    measure = np.abs(wrong).max(axis=1, initial=0.0) if minimax else (wrong**2).sum(axis=1)
+    index = _different(x, measure)
+    closes = _closes(x, u, slides) | minimal  # a proved minimum is one all the same
+    index = index[closes[index] | (np.arange(len(index)) == 0)]
+    return FunctionFits(
+        x=x[index], side=side[index], wrong=wrong[index], closes=closes[index],
+        minimal=minimal[index],
+    )  # fmt: skip
+
+
+def _level(
+    lanes: _Lanes, fit: LaneFit, box: Box, progress: Callable[[float], None] | None
+) -> LaneFit:
+    """Lanes with small largest errors, by growing powers."""
+    every = np.arange(len(fit))
+    none = np.zeros(lanes.residuals(fit.x, fit.t, every).shared.shape[1], dtype=bool)
+    powers = (*POWERS, *POWERS[-1:] * len(lanes.wishes.weights))
+    for k, power in enumerate(powers):
+        if progress is not None:
+            progress(k / len(powers))
+        largest = largest_misses(lanes.residuals(fit.x, fit.t, every), none)
+
+        def raised(
+            x: Array, t: Array, which: IndexArray, power: int = power, scale: Array = largest
+        ) -> Residuals:
+            found = lanes.residuals(x, t, which)
+            return powered(found, power, np.maximum(scale[which], 1e-300), none)
+
+        fit = minimise(raised, fit, box, _POWER_STEPS)
+        for weight in lanes.wishes.weights[-1:]:
+            lanes.wishes.update(fit.x, weight)
+    return fit
+
+
+def _box(size: float, slides: bool, first: tuple[float, float] | None) -> Box:
+    """Bounds of lengths, which may point the other way where starts are given, and of starts."""
+    small, large = size / _FAR, _FAR * size
+    if first is None:
+        least, starts = [-large, -large, small], [(0.0, 0.0), (0.0, 0.0)]
+    else:
+        least = [small, -large if slides else small, small]
+        starts = [first, (-np.inf, np.inf)]
+    return Box(
+        least=np.array([*least, *(low for low, _ in starts)]),
+        most=np.array([large] * 3 + [high for _, high in starts]),
+    )
+
+
+def _closes(x: Array, u: Array, slides: bool) -> BoolArray:
+    """Whether loops close with some transmission angle at all inputs, (D,)."""
+    a, second, c = x[:, :3].T[:, :, None]
+    crank = a * np.exp(1j * (u + x[:, 3:4]))
+    if slides:
+        cosine = (second - crank.imag) / c
+    else:
+        cosine = (second**2 + c**2 - np.abs(1.0 - crank) ** 2) / (2.0 * second * c)
+    return np.asarray((1.0 - cosine**2 >= _HARDLY**2).all(axis=1))
+
+
+def _different(x: Array, measure: Array) -> IndexArray:
+    """Lanes with different lengths by rising measure, without those that have none."""
+    chosen: list[int] = []
+    for k in np.argsort(measure, kind="stable"):
+        alike = np.abs(x[chosen, :3] - x[k, :3]).max(axis=1) <= _ALIKE * np.abs(x[k, :3]).max()
+        if np.isfinite(measure[k]) and not alike.any():
+            chosen.append(int(k))
+    return np.array(chosen, dtype=np.intp)
+
+
+def _sharpened(lanes: _Lanes, x: Array, k: int, box: Box) -> tuple[Array, bool]:
+    """A fit whose largest errors are made equal, if that lowers them, and whether it is minimal;
+    numbers at their bounds stay there.
+    """
+    free, given = (x > box.least) & (x < box.most), box.least == box.most
+
+    def errors(own: Array) -> tuple[Array, Array]:
+        every = x.copy()
+        every[free] = own
+        wrong, by_x = lanes.errors(every[None], np.array([k]))
+        return wrong[0], by_x[0][:, free]
+
+    before = np.abs(errors(x[free])[0])
+    count = int(free.sum()) + 1
+    if not np.isfinite(before).all() or len(before) < count:
+        return x, False
+    points = [int(n) for n in np.sort(np.argsort(-before, kind="stable")[:count])]
+    found = levelled(errors, x[free], points)
+    if found is None or not np.abs(errors(found[0])[0]).max() <= before.max() * (1.0 + _LEVEL):
+        return x, False
+    sharp = x.copy()
+    sharp[free] = found[0]
+    if (box.inside(sharp) != sharp).any():
+        return x, False
+    return sharp, bool((free | given).all()) and levels_minimise(errors, found[0], points)

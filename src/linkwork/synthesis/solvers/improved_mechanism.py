@@ -1,0 +1,391 @@
+"""An improved mechanism of any kind with the verdict on it."""
+
+from __future__ import annotations
+
+import math
+from abc import abstractmethod
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, replace
+from functools import cached_property
+from itertools import combinations, islice
+from typing import Any
+
+import numpy as np
+
+from linkwork.core.foundation.arrays import Array, ComplexArray
+from linkwork.core.foundation.errors import internal
+from linkwork.core.foundation.names import GROUND
+from linkwork.core.foundation.values import told_beside
+from linkwork.core.mechanism.description import Description
+from linkwork.core.mechanism.linkage import Draft
+from linkwork.core.results.limit import LimitKind
+from linkwork.core.results.motion import Motion, branch_end
+from linkwork.core.results.quantities.rows import TRANSMISSION_ANGLE
+from linkwork.synthesis.defects.verdicts import Defect, DefectKind, JudgedDesign, tolerance_message
+from linkwork.synthesis.improvement.proved_design import ImprovedDesign
+from linkwork.synthesis.improvement.settings import least_in_rows
+from linkwork.synthesis.tasks.conditions import (
+    SAME_GIVEN,
+    Wishes,
+    distances_to_segments,
+    outside_range,
+)
+from linkwork.synthesis.tasks.task import Task
+
+__all__ = ["ImprovedMechanism", "SweptDesign", "wishes_in_motion"]
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class SweptDesign(JudgedDesign):
+    """A design that is judged by a sweep of its mechanism.
+
+    Examples
+    --------
+    >>> from linkwork.synthesis.solvers.improved_mechanism import ImprovedMechanism, SweptDesign
+    >>> issubclass(ImprovedMechanism, SweptDesign)
+    True
+    """
+
+    @property
+    @abstractmethod
+    def moved(self) -> ImprovedMechanism:
+        """Its mechanism in the rows of the driven range."""
+
+
+@internal("improved")
+@dataclass(frozen=True, kw_only=True, eq=False)
+class ImprovedMechanism(SweptDesign):
+    """An improved mechanism, and what keeps it from doing its task.
+
+    Parameters
+    ----------
+    improved : ImprovedDesign
+    wishes : Wishes
+        Those of the task, in radians.
+
+    Examples
+    --------
+    >>> import linkwork as lw
+    >>> goals = [{"of": "stroke(d)", "target": 70}]
+    >>> task = lw.Task.improve("slider-crank", goals=goals, vary=["O2 A"], starts=2)
+    >>> [design.numbers for design in task.solve().delivered]
+    [{'O2 A': 34.46567317588864}]
+    """
+
+    improved: ImprovedDesign
+    wishes: Wishes
+
+    @property
+    def moved(self) -> ImprovedMechanism:
+        """The design itself."""
+        return self
+
+    @property
+    def mechanism(self) -> str:
+        """The mechanism that was improved, as the task names it."""
+        return self.task.mechanisms[0]
+
+    @property
+    def driven(self) -> str:
+        """The leading input."""
+        return next(iter(self._motion.inputs)) if self._motion is not None else ""
+
+    @property
+    def numbers(self) -> dict[str, float]:
+        """The numbers that vary [file units]."""
+        return dict(self.improved.numbers)
+
+    @property
+    def goals(self) -> dict[str, float]:
+        """The root mean squares of the misses of goals that are no bounds [file units]."""
+        return dict(self.improved.goals)
+
+    @property
+    def _motion(self) -> Motion | None:
+        return self.improved.motion
+
+    @cached_property
+    def _places(self) -> dict[str, ComplexArray]:
+        """The points in the rows that have a position."""
+        motion = self._motion
+        if motion is None:
+            return {}
+        return {name: motion.trace(name)[motion.found] for name in motion.points}
+
+    @property
+    def points(self) -> dict[str, complex]:
+        """The points in the first row that has a position [length]."""
+        return {name: complex(path[0]) for name, path in self._places.items() if len(path)}
+
+    @property
+    def inputs(self) -> tuple[float, ...]:
+        """The inputs at the positions [file units]."""
+        return self.improved.inputs
+
+    @property
+    def first_input(self) -> float:
+        """The input at the first position [file units]."""
+        if self.inputs:
+            return self.inputs[0]
+        motion = self._motion
+        if motion is None or not motion.found.any():
+            return float("nan")
+        return float(motion.inputs[self.driven][motion.found][0])
+
+    @cached_property
+    def linkage(self) -> Description:
+        """The mechanism, with the name of its design."""
+        return replace(self.improved.description, name=self._name)
+
+    # Measures
+
+    @cached_property
+    def transmission(self) -> float:
+        """A lower bound of the least transmission angle of all dyads in the whole motion, or the
+        least one in its rows where that is not proved; NaN without dyads [file's angle unit].
+        """
+        whole, motion = self.improved.whole_motion, self._motion
+        if whole is not None and whole.dyads:
+            least = whole.least_transmission(self.wishes.transmission)
+            return self.task.angle.from_radians(least.low)
+        return float("nan") if motion is None else least_in_rows(motion)
+
+    @cached_property
+    def _lengths(self) -> Array:
+        """The lengths of links, and the distances of fixed pivots [length]."""
+        description, points = self.improved.description, self.points
+        if not isinstance(description, Draft) or not points:
+            return np.zeros(0)
+        moving = {p for name, own in description.links.items() if name != GROUND for p in own}
+        found = []
+        for name, own in description.links.items():
+            held = [p for p in own if name != GROUND or p in moving]
+            found += [abs(points[p] - points[q]) for p, q in combinations(held, 2)]
+        return np.array([length for length in found if length > 0.0])
+
+    @property
+    def size(self) -> float:
+        """The longest link, or the largest distance of fixed pivots [length]."""
+        return float(self._lengths.max(initial=np.nan if not len(self._lengths) else 0.0))
+
+    @property
+    def shortest(self) -> float:
+        """The shortest link, or distance of fixed pivots [length]."""
+        return float(self._lengths.min(initial=np.inf)) if len(self._lengths) else float("nan")
+
+    @property
+    def error(self) -> float:
+        """The largest distance from a point, or without points the largest weighted miss."""
+        if self.improved.misses:
+            return float(np.nan_to_num(np.max(self.improved.misses), nan=np.inf))
+        return self.improved.largest
+
+    @property
+    def error_unit(self) -> str:
+        """The unit of the error; "" of weighted misses."""
+        return self.task.length if self.improved.misses else ""
+
+    # Verdict
+
+    @property
+    def kinds(self) -> tuple[DefectKind, ...]:
+        """The kinds of its defects; none for a sound design."""
+        return tuple(defect.kind for defect in self.defects)
+
+    @cached_property
+    def defects(self) -> tuple[Defect, ...]:
+        """Its defects in words; none for a sound design."""
+        found = tuple(self._found())
+        if not found and not self.improved.sound:
+            found = ((DefectKind.NOT_PROVED, self.improved.message),)
+        return tuple(Defect(kind=kind, between=None, message=message) for kind, message in found)
+
+    def _found(self) -> Iterator[tuple[DefectKind, str]]:
+        motion, task = self._motion, self.task
+        if motion is None or not motion.found.any():
+            yield DefectKind.RANGE, self.improved.message
+            return
+        lost = int(np.count_nonzero(~motion.found))
+        if lost:
+            told = "the input does not turn fully: " if task.wanted.turns_fully else ""
+            yield DefectKind.RANGE, f"{told}{lost} of {len(motion)} rows have no position"
+        elif (end := branch_end(motion)) is not None:
+            kind, place = end.kind, self._input_text(end.input)
+            if kind is LimitKind.DEAD_POINT:
+                yield DefectKind.RANGE, f"the driven range reaches the dead point {place}"
+            else:
+                yield DefectKind.NOT_PROVED, f"not proved: a {kind.word} at {place}"
+        elif not motion.certified.all():
+            unproved = int(np.count_nonzero(~motion.certified))
+            yield DefectKind.NOT_PROVED, f"{unproved} of {len(motion)} rows are not proved"
+        if self.improved.near_dead:
+            yield DefectKind.RANGE, self.improved.near_dead
+        if self.improved.unmoved and not lost:
+            yield DefectKind.UNMOVED, self.improved.unmoved
+        yield from self._out_of_range(motion)
+        misses = np.array(self.improved.misses)
+        for k in np.flatnonzero(~np.isfinite(misses))[:1]:
+            yield DefectKind.BRANCH, f"position {k + 1} is not on the branch of the table"
+        reach = self.wishes.reach
+        if reach.size and (np.nan_to_num(misses) > reach).any():
+            yield DefectKind.TOLERANCE, tolerance_message(misses, reach, task.length)
+        if self.wishes.ordered and task.positions and not _is_in_order(self.improved.inputs):
+            order = np.argsort(self.improved.inputs, kind="stable") + 1
+            told = f"the input passes the positions in the order {', '.join(map(str, order))}"
+            yield DefectKind.ORDER, told
+        for told in self.improved.broken:
+            yield DefectKind.BOUND, told
+        yield from self._transmission_defects()
+        yield from self._geometric_defects()
+
+    def _transmission_defects(self) -> Iterator[tuple[DefectKind, str]]:
+        angle, wanted = self.task.angle, self.task.wanted.transmission
+        whole, least = self.improved.whole_motion, self.wishes.transmission
+        if not wanted or self.transmission >= wanted:
+            return
+        kind, told, place = DefectKind.TRANSMISSION, "transmission angle down to", ""
+        down = self.transmission
+        if whole is not None and whole.dyads:
+            found = whole.least_transmission(least)
+            down, place = angle.from_radians(found.high), f" at {self._input_text(found.at)}"
+            if found.high >= least:
+                kind = DefectKind.NOT_PROVED
+                told = "not proved: the transmission angle comes down to"
+        shown = told_beside(down, wanted)
+        yield kind, f"{told} {shown}{angle.sign}{place}, wanted {wanted:g}{angle.sign}"
+
+    def _input_text(self, value: float) -> str:
+        """A value of the leading input with its name."""
+        assert self._motion is not None
+        lead = self._motion.quantities.names.lead
+        unit, angle = self._motion.input_units[lead], self.task.angle
+        return f"{lead} = {value:.6g}{angle.sign if unit == angle.value else f' {unit}'}"
+
+    def _out_of_range(self, motion: Motion) -> Iterator[tuple[DefectKind, str]]:
+        """The first position outside the driven range."""
+        table = np.asarray(motion.inputs[self.driven])[motion.asked]
+        turn = self.task.angle.turn if motion.derivative_unit == "rad" else math.inf
+        for k, at, told in islice(outside_range(self.improved.inputs, table, turn), 1):
+            yield DefectKind.RANGE, f"position {k + 1} is passed at {at:.6g}, {told}"
+
+    def _geometric_defects(self) -> Iterator[tuple[DefectKind, str]]:
+        if self.task.kind != "improve":  # improvements vary what their tasks name
+            yield from self._missed_givens()
+        outside = [
+            name
+            for name, place in self._pivots().items()
+            if not self.wishes.within_region(np.array([place]), np.zeros(1))[0]
+        ]
+        if outside:
+            yield DefectKind.PIVOTS, f"fixed pivots outside their region: {', '.join(outside)}"
+        lengths = self._lengths
+        if len(lengths):
+            shortest, longest = lengths.min(), lengths.max()
+            if not self.wishes.allows(shortest, longest):
+                told = f"lengths from {shortest:.4g} to {longest:.4g} are out of bounds"
+                yield DefectKind.LENGTHS, told
+        yield from self._obstacle_defects()
+
+    def _obstacle_defects(self) -> Iterator[tuple[DefectKind, str]]:
+        whole, links = self.improved.whole_motion, self._sides
+        if not len(self.wishes.obstacles) or not links:
+            return
+        if whole is None:
+            if self._meets_obstacle():
+                told = "a link meets an obstacle in a row, or passes it too closely to exclude that"
+                yield DefectKind.OBSTACLE, told
+            return
+        found = whole.contact([ends for _, ends in links], self.wishes.obstacles)
+        if found.met is not None:
+            side, place = found.met
+            told = f'"{links[side][0]}" meets an obstacle at {self._input_text(place)}'
+            yield DefectKind.OBSTACLE, told
+        elif found.open is not None:
+            first, last = map(self._input_text, found.open)
+            told = "not proved: the links may meet an obstacle between"
+            yield DefectKind.NOT_PROVED, f"{told} {first} and {last}"
+
+    @cached_property
+    def _sides(self) -> list[tuple[str, tuple[str, str]]]:
+        """The lines between two points of every moving link."""
+        description = self.improved.description
+        if not isinstance(description, Draft):
+            return []
+        links = {name: own for name, own in description.links.items() if name != GROUND}
+        return [(name, ends) for name, own in links.items() for ends in combinations(own, 2)]
+
+    def _missed_givens(self) -> Iterator[tuple[DefectKind, str]]:
+        """Pivots and lengths that the task gives and the design does not have."""
+        given, points, unit = self.task.given, self.points, self.task.length
+        near = SAME_GIVEN * self.size
+        pivots = np.array([*self._pivots().values()], dtype=complex)
+        for place in given.fixed_pivots:
+            if not np.abs(pivots - complex(*place)).min(initial=np.inf) <= near:
+                yield DefectKind.PIVOTS, f"no fixed pivot at ({place[0]:g}, {place[1]:g}) as given"
+        for name, wanted in given.lengths.items():
+            one, other = name.split()
+            if not {one, other} <= points.keys():
+                yield DefectKind.LENGTHS, f'no length "{name}", given as {wanted:g} {unit}'
+                continue
+            found = abs(points[one] - points[other])
+            if abs(found - wanted) > SAME_GIVEN * wanted:
+                told = f'the length "{name}" is {found:.6g} {unit}, given as {wanted:g} {unit}'
+                yield DefectKind.LENGTHS, told
+
+    def _pivots(self) -> dict[str, complex]:
+        description = self.improved.description
+        if not isinstance(description, Draft):
+            return {}
+        moving = {p for name, own in description.links.items() if name != GROUND for p in own}
+        return {p: self.points[p] for p in description.links.get(GROUND, ()) if p in moving}
+
+    def _meets_obstacle(self) -> bool:
+        """Whether a side of a link comes nearer to a circle than its ends move between rows."""
+        for _, ends in self._sides:
+            one, other = (self._places[point] for point in ends)
+            moved = max(_largest_step(one), _largest_step(other))
+            for x, y, radius in self.wishes.obstacles:
+                away = distances_to_segments(np.array(complex(x, y)), one, other)
+                if away.min() <= radius + 0.5 * moved:
+                    return True
+        return False
+
+    @property
+    def proved_in_motion(self) -> tuple[str, ...]:
+        """Wishes that are judged in the whole motion."""
+        return () if self.improved.whole_motion is None else wishes_in_motion(self.task)
+
+    @property
+    def tested_in_rows(self) -> tuple[str, ...]:
+        """Wishes that are tested in the rows of the table only."""
+        return () if self.improved.whole_motion is not None else wishes_in_motion(self.task)
+
+    def _details(self) -> Mapping[str, Any]:
+        return {
+            "numbers": self.numbers,
+            "inputs": list(self.inputs),
+            "proved_in_motion": list(self.proved_in_motion),
+            "tested_in_rows": list(self.tested_in_rows),
+            "goals": self.goals,
+            "misses": list(self.improved.misses),
+            "total": self.improved.total,
+            "message": self.improved.message,
+        }
+
+
+def wishes_in_motion(task: Task) -> tuple[str, ...]:
+    """Wishes of a task that depend on all positions: others than lengths and fixed pivots."""
+    asked = (
+        (TRANSMISSION_ANGLE.word, task.wanted.transmission),
+        ("clear_of", task.wanted.obstacles),
+    )
+    return tuple(word for word, given in asked if given)
+
+
+def _is_in_order(inputs: tuple[float, ...]) -> bool:
+    steps = np.diff(inputs)
+    return bool((steps > 0.0).all() or (steps < 0.0).all())
+
+
+def _largest_step(path: ComplexArray) -> float:
+    return float(np.abs(np.diff(path)).max(initial=0.0))

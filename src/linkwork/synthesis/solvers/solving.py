@@ -1,0 +1,604 @@
+"""Delivered designs that are alike: Roberts' cognates, and images of one mechanism."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import replace
+from functools import partial
+from itertools import zip_longest
+from typing import NamedTuple, TypeVar
+
+import numpy as np
+
+from linkwork.core.foundation.arrays import Array
+from linkwork.core.foundation.errors import MechanismError
+from linkwork.core.foundation.rounding import EQUAL_ROWS
+from linkwork.core.foundation.statuses import Completeness
+from linkwork.core.foundation.values import check_flags
+from linkwork.core.results.listing.motion_listing import rounded_down
+from linkwork.synthesis.defects.verdicts import DefectKind, JudgedDesign, judge
+from linkwork.synthesis.improvement.settings import FITS, Improvement
+from linkwork.synthesis.loops.candidates import Candidates, Drive
+from linkwork.synthesis.loops.driven_loop import Range
+from linkwork.synthesis.poses.dyads import Refusal
+from linkwork.synthesis.precision.problem import cognates, exchange_legs
+from linkwork.synthesis.solvers.curves import is_closed, solve_curve, usual_longest
+from linkwork.synthesis.solvers.function_synthesis import (
+    USUAL_RATIO,
+    has_usual_ratio,
+    solve_function,
+)
+from linkwork.synthesis.solvers.improved_mechanism import SweptDesign, wishes_in_motion
+from linkwork.synthesis.solvers.improvement import improve_mechanism
+from linkwork.synthesis.solvers.motions import solve_motion
+from linkwork.synthesis.solvers.paths import solve_path
+from linkwork.synthesis.solvers.result import (
+    Dyad,
+    Found,
+    JudgedDesigns,
+    Synthesis,
+    SynthesizedDesign,
+    goal_misses,
+    relative_misses,
+)
+from linkwork.synthesis.solvers.watt import solve_watt
+from linkwork.synthesis.tasks.conditions import Wanted, Wishes
+from linkwork.synthesis.tasks.function_goal import FunctionGoal
+from linkwork.synthesis.tasks.task import MECHANISMS, Task
+
+_ALIKE = 0.01  # of the longest link of the smaller one: fits of one minimum from several starts
+_EQUAL_NUMBERS = 1e-3  # relative: numbers of mirror images
+
+_LEGS = ("A", "A0", "B", "B0")
+_Pair = tuple[SynthesizedDesign, SynthesizedDesign]
+
+
+def alike_among(found: Synthesis) -> Iterator[str]:
+    """The groups of delivered loops that are alike, in words."""
+    loops = [design for design in found.of_loops if design.delivered]
+    images = list(_images(loops))
+    # of a symmetric curve a cognate may be the mirror image, which has the same links
+    others = [pair for pair in _cognates(loops) if pair not in images]
+    for told, pairs in (
+        ("Cognates draw one curve with different links", others),
+        ("The same links in different places", images),
+    ):
+        groups: list[set[int]] = []
+        for one, other in pairs:
+            pair = {one.number, other.number}
+            joined = [group for group in groups if group & pair]
+            groups = [g for g in groups if g not in joined] + [pair.union(*joined)]
+        shown = [", ".join(map(str, sorted(group))) for group in sorted(groups, key=min)]
+        if shown:
+            yield f"{told}: designs {'; '.join(shown)}."
+
+
+def _cognates(loops: Sequence[SynthesizedDesign]) -> Iterator[_Pair]:
+    """Four-bars with P in one place, the second of which is a cognate of the first."""
+    loops = [design for design in loops if design.points.keys() == {*_LEGS, "P"}]
+    places = np.array([[d.points[name] for name in (*_LEGS, "P")] for d in loops]).reshape(-1, 5)
+    legs, sizes = places[:, :4] - places[:, 4:], np.array([design.size for design in loops])
+    linkages = np.stack([legs, legs.conj()], axis=2).reshape(-1, 8)
+    for k, one in enumerate(loops):
+        rest = slice(k + 1, None)
+        wanted = np.array([linkages[rest], exchange_legs(linkages[rest])])
+        own = np.array(cognates(linkages[k : k + 1]))[:, None]
+        away = np.abs(own - wanted).max(axis=3).min(axis=(0, 1))
+        away = np.maximum(away, np.abs(places[rest, 4] - places[k, 4]))
+        near = away <= _ALIKE * np.minimum(sizes[rest], sizes[k])
+        yield from ((one, loops[k + 1 + int(i)]) for i in np.flatnonzero(near))
+
+
+def _images(loops: Sequence[SynthesizedDesign]) -> Iterator[_Pair]:
+    """Designs with the same links, by their longest, their shortest and their angle."""
+    numbers = np.array([(d.size, d.shortest, d.transmission) for d in loops]).reshape(-1, 3)
+    for k, one in enumerate(loops):
+        alike = np.isclose(numbers[k + 1 :], numbers[k], rtol=_EQUAL_NUMBERS, atol=0.0)
+        for other in (loops[k + 1 + int(i)] for i in np.flatnonzero(alike.all(axis=1))):
+            if one.mechanism == other.mechanism and one.drive is other.drive:
+                yield one, other
+
+
+# ----------------------------------------------------------------------
+# What to do about delivered designs that a designer would not build, or about none at all.
+
+
+#: Handbooks ask for 40 deg or more; below 30 deg friction jams many mechanisms.
+_LEAST_TRANSMISSION = 30.0  # [deg]
+_MISSED = 1e-6  # of what is wanted: a goal that is not met
+_AT_BOUND = 0.999  # of the longest link
+_MOVING = (DefectKind.CIRCUIT, DefectKind.BRANCH, DefectKind.ORDER)
+
+
+def remarks_on(found: Synthesis) -> tuple[str, ...]:
+    """What is doubtful about delivered designs, and the wishes that refuse these.
+
+    A task that states a wish gets no remark about it.
+    """
+    counts = [(sum(map(doubt.concerns, found.delivered)), doubt) for doubt in _doubts(found.task)]
+    doubts = (
+        f"Delivered designs with {doubt.what}: {count}. {doubt.wish} refuses them."
+        for count, doubt in counts
+        if count
+    )
+    return (*doubts, *_missed_goals(found), *alike_among(found))
+
+
+def _missed_goals(found: Synthesis) -> Iterator[str]:
+    """The goals that no delivered design comes near, with the smallest miss; of fronts none."""
+    if found.task.improvement is None or found.task.improvement.front:
+        return
+    shares = [relative_misses(design) for design in found.delivered]
+    for name, misses in goal_misses(found.delivered).items():
+        share = min((own.get(name, 0.0) for own in shares), default=0.0)
+        if share > _MISSED:
+            yield f"Every delivered design misses {name} by {min(misses):.4g} or more."
+
+
+def remark_on(design: JudgedDesign) -> str:
+    """What is doubtful about a sound design, and the wish that refuses it; "" if nothing is."""
+    if design.kinds:
+        return ""
+    doubts = (doubt for doubt in _doubts(design.task) if doubt.concerns(design))
+    return " ".join(f"It has {doubt.what}: {doubt.wish} refuses it." for doubt in doubts)
+
+
+class _Doubt(NamedTuple):
+    what: str
+    wish: str
+    concerns: Callable[[JudgedDesign], bool]
+
+
+def _doubts(task: Task) -> Iterator[_Doubt]:
+    wanted = task.wanted
+    if not wanted.transmission:
+        least = _LEAST_TRANSMISSION * task.angle.turn / 360.0
+        yield _Doubt(
+            f"a transmission angle below {least:.4g} {task.angle.value}",
+            f"[wanted] transmission = {{ least = {least:.4g} }}",
+            lambda design: design.transmission < least,
+        )
+    if (wanted.shortest, wanted.longest, wanted.ratio) == (0.0, math.inf, math.inf):
+        usual = has_usual_ratio(task)
+        bound = USUAL_RATIO * (_AT_BOUND if usual else 1.0)
+        told, ratio = ("at the default bound,", "…") if usual else ("over", f"{USUAL_RATIO:g}")
+        yield _Doubt(
+            f"a longest link {told} {USUAL_RATIO:g} times the shortest",
+            f"[wanted] lengths = {{ ratio = {ratio} }}",
+            lambda design: design.size > bound * design.shortest,
+        )
+    longest = usual_longest(task) if task.kind == "path" and task.is_approximate else math.inf
+    if longest < math.inf:
+        yield _Doubt(
+            f"a longest link at the usual bound, {longest:.4g} {task.length}",
+            "[wanted] lengths = { most = … }",
+            lambda design: design.size > _AT_BOUND * longest,
+        )
+
+
+def advice_of(found: Synthesis) -> str:
+    """What could be changed in a task without a sound design that no relaxed wish would help, or
+    what is attained of one; of a function also what else helps, which is tried. "" if there is a
+    sound design.
+    """
+    if found.sound:
+        return ""
+    if found.helpful_change:
+        return found.helpful_change
+    if found.costliest is not None:
+        return _attained(found)
+    if found.task.kind == "improve":
+        if not found.designs:
+            return _of_goals(found)
+        unmoved = [own for own in found.designs if own.kinds == (DefectKind.UNMOVED,)]
+        if unmoved:
+            return (
+                f"{unmoved[0].defects[0].message[:1].upper()}{unmoved[0].defects[0].message[1:]}."
+            )
+        settings = found.task.improvement
+        wider = ", wider bounds" if settings is not None and settings.bounds else ""
+        told = (
+            f"The driven range is the table of {found.task.mechanisms[0]}. Try more starts{wider}, "
+            "targets nearer to its own values, or a part of it: "
+            "[wanted] input = { from = …, to = … }."
+        )
+        return told if DefectKind.RANGE in found.defects else ""
+    if found.designs and not found.defects.keys() & {*_MOVING}:
+        return ""
+    first, *others = _changes(found)
+    steps = first + "".join(f", or {other}" for other in others)
+    blame = "No wish is to blame. " if found.designs else ""
+    return f"{blame}Try to {steps}."
+
+
+def near_misses(found: Synthesis) -> list[int]:
+    """The places of designs that have too small a transmission angle and no other defect, the
+    largest angle first.
+    """
+    own = [k for k, d in enumerate(found.designs) if d.kinds == (DefectKind.TRANSMISSION,)]
+    return sorted(own, key=lambda k: -found.designs[k].transmission)
+
+
+def _attained(found: Synthesis) -> str:
+    for k in near_misses(found)[:1]:
+        best = rounded_down(found.designs[k].transmission, 4)
+        return f"The best least transmission angle is {best:g}{found.task.angle.sign}."
+    return ""
+
+
+def _of_goals(found: Synthesis) -> str:
+    """How to see why no start of an improvement has all its goals."""
+    settings = found.task.improvement
+    names = [goal.of for goal in settings.goals] if settings is not None else []
+    if not names:
+        return "Start nearer to the positions."
+    shown = ", ".join(f'"{name}"' for name in names)
+    why = "No start has a value of every goal; the time ratio of a constant angle has none."
+    if settings is not None and settings.bounds:
+        why = "No start within the bounds closes and has a value of every goal."
+    return f"{why} linkwork sweep {found.task.mechanisms[0]} --columns shows the values of {shown}."
+
+
+def _changes(found: Synthesis) -> Iterator[str]:
+    """Changes of a task that give further designs, the smallest first."""
+    task = found.task
+    if task.function is not None:
+        yield "change the ranges of input and output"
+        return
+    if task.kind == "motion" and not {*MECHANISMS} <= {*task.mechanisms}:
+        other = next(name for name in MECHANISMS if name not in task.mechanisms)
+        yield f'allow other kinds of mechanism, such as "{other}"'
+    if task.wanted.region:
+        yield "enlarge the region of fixed pivots"
+    if task.given.fixed_pivots or task.given.moving_pivots or task.given.lengths:
+        yield "give fewer pivots and lengths"
+    if found.starts:
+        yield "search from more starts"
+    elif not any(position.tolerance for position in task.positions):
+        yield "give positions a tolerance"
+    yield "move a position or leave it out"
+
+
+# ----------------------------------------------------------------------
+# From a task to its designs: solve, judge, rank, describe.
+#
+# :data:`SOLVERS` holds one solver for each kind of task; a further one needs a line there.
+
+
+Solver = Callable[[Task, Wishes, Callable[[float], None] | None], Found]
+
+#: The solvers by kind of task.
+SOLVERS: dict[str, Solver] = {
+    "motion": lambda task, wishes, progress: solve_motion(task, wishes),
+    "path": lambda task, wishes, progress: (
+        solve_curve(task, wishes, progress)
+        if task.is_approximate
+        else solve_path(task, wishes, progress, _sound_designs(task))
+    ),
+    "mixed": lambda task, wishes, progress: solve_path(
+        task, wishes, progress, _sound_designs(task)
+    ),
+    "function": solve_function,
+}
+_RIGHT = math.pi / 2.0
+_Alone = TypeVar("_Alone", bound=JudgedDesign)
+
+
+def solve_task(task: Task, *, progress: Callable[[float], None] | None = None) -> Synthesis:
+    """All designs for a task, each with its defects.
+
+    Raises
+    ------
+    InputError
+        If the task contradicts itself.
+    """
+    check_flags(progress)
+    if task.kind == "improve":
+        return _improved(task, progress)
+    if task.is_six_bar:
+        return _six_bars(task, progress)
+    return replace(_of_loops(task, progress), what_helps=partial(_what_helps, task))
+
+
+def _of_loops(task: Task, progress: Callable[[float], None] | None = None) -> Synthesis:
+    """Designs of one loop."""
+    found = SOLVERS[task.kind](task, wishes_of(task, Drive.A0), progress)
+    judged = [
+        JudgedDesigns(
+            task=task,
+            given=part,
+            drive=drive,
+            wishes=(wishes := _measured(wishes_of(task, drive), part, zero)),
+            verdicts=judge(part, drive, wishes),
+            zero=zero,
+            output=found.output,
+        )
+        for part, zero in zip_longest(found.candidates, found.zeros)
+        for drive in part.drives
+        if drive in found.drives
+    ]
+    return Synthesis(
+        task=task,
+        complex=found.complex,
+        real=found.real,
+        proved=found.proved,
+        triples=found.triples,
+        linkages=sum(map(len, found.candidates)),
+        completeness=found.completeness,
+        message=found.message + ("" if task.function is None else task.function.note),
+        dyads=() if found.dyads is None else tuple(_dyads(found)),
+        designs=tuple(_ranked(task, judged)),
+        starts=found.starts,
+        interrupted=found.interrupted,
+    )
+
+
+def _what_helps(task: Task) -> str:
+    """The first change of a task of a function with sound designs, and their number."""
+    for change, goal in _other_goals(task):
+        try:
+            count = _of_loops(replace(task, function=goal)).sound
+        except MechanismError:  # more pairs than free start angles meet
+            continue
+        if count:
+            told = "is 1 design" if count == 1 else f"are {count} designs"
+            return f"{change} there {told} without defects."
+    return ""
+
+
+def _other_goals(task: Task) -> Iterator[tuple[str, FunctionGoal]]:
+    goal = task.function
+    if goal is None:
+        return
+    if goal.starts_fixed:
+        free = goal.freed
+        spans = [f"{name} = {getattr(free, name)[1]:g}" for name in free.free]
+        told = "leave out input and output" if goal.pairs else " and ".join(spans)
+        yield f"With free start angles ({told})", free
+    for fit in FITS:
+        if fit != goal.fit:
+            yield f'With fit = "{fit}"', replace(goal, fit=fit)
+
+
+def _measured(wishes: Wishes, part: Candidates, zero: tuple[float, float] | None) -> Wishes:
+    """Wishes with the range of a crank that the task measures from its moving pivot."""
+    asked = wishes.range
+    crank = (part.moving_a[:1, 0] - part.fixed_a[:1]) * np.exp(-1j * (zero or (0.0, 0.0))[0])
+    if asked is None or zero is None or (crank.real > 0.0).all():
+        return wishes
+    return replace(
+        wishes, range=replace(asked, start=asked.start + math.pi, stop=asked.stop + math.pi)
+    )
+
+
+def _sound_designs(task: Task) -> Callable[[Candidates], int]:
+    """What counts the sound designs of candidates, with any link driven."""
+
+    def number(part: Candidates) -> int:
+        verdicts = (judge(part, drive, wishes_of(task, drive)) for drive in part.drives)
+        return sum(int(found.sound.sum()) for found in verdicts)
+
+    return number
+
+
+def _improved(task: Task, progress: Callable[[float], None] | None) -> Synthesis:
+    """Improved designs, sound ones by falling score."""
+    designs, starts, interrupted = improve_mechanism(task, wishes_of(task, Drive.A0), progress)
+    front = (task.improvement or Improvement()).front
+    try:
+        ranked = _ranked_alone(task, designs, in_order=bool(front))
+    except KeyboardInterrupt:
+        # what is judged is kept; a further interruption ends the rest
+        interrupted, ranked = True, _ranked_alone(task, designs, in_order=bool(front))
+    seed = (task.improvement or Improvement()).seed
+    kind = (
+        "a front of designs, each the best one in some goal or trade-off,"
+        if front
+        else "different fits"
+    )
+    told = f"a sample: {kind} from {starts} starts with seed {seed}"
+    told += _of_motion(task, ranked)
+    told += "" if task.curve is None else task.curve.note
+    return Synthesis(
+        task=task,
+        complex=len(designs),
+        real=len(designs),
+        proved=sum(design.improved.sound for design in designs),
+        triples=0,
+        linkages=len(designs),
+        completeness=Completeness.SAMPLED,
+        message=f"interrupted: the best so far of {starts} starts" if interrupted else told,
+        dyads=(),
+        designs=ranked,
+        starts=starts,
+        interrupted=interrupted,
+    )
+
+
+def _six_bars(task: Task, progress: Callable[[float], None] | None) -> Synthesis:
+    """All Watt-II six-bars of a function, sound ones by falling score."""
+    designs, found, (grade, message) = solve_watt(task, wishes_of(task, Drive.A0), progress)
+    ranked = _ranked_alone(task, designs)
+    return Synthesis(
+        task=task,
+        complex=len(found.roots.x),
+        real=len(found),
+        proved=int(found.proved.sum()),
+        triples=0,
+        linkages=len(designs),
+        completeness=grade,
+        message=message + _of_motion(task, ranked),
+        dyads=(),
+        designs=ranked,
+    )
+
+
+def _of_motion(task: Task, designs: Sequence[SweptDesign]) -> str:
+    """Where wishes are proved for the sound ones of designs that are swept."""
+    sound, wishes = [d.moved for d in designs if not d.kinds], " and ".join(wishes_in_motion(task))
+    if not wishes or not sound:
+        return ""
+    if all(design.proved_in_motion for design in sound):
+        return f"; {wishes} proved on the whole motion"
+    return f"; {wishes} tested in the rows of the table, all else on the whole motion"
+
+
+def _ranked_alone(
+    task: Task, designs: Sequence[_Alone], *, in_order: bool = False
+) -> tuple[_Alone, ...]:
+    """Designs that were judged one by one: sound ones by falling score, then the others.
+
+    ``in_order``: sound ones in their own order, all of them delivered.
+    """
+    # an angle in radians, as those of four-bars are
+    unit = {task.angle.value: task.angle.radians}
+    measured = [
+        (
+            task.in_radians(d.transmission),
+            d.size,
+            max(relative_misses(d).values(), default=0.0)  # of bounds alone
+            if task.has_goals_alone
+            else d.error * unit.get(d.error_unit, 1.0),
+        )
+        for d in designs
+    ]
+    scores = _scores(task, *np.array(measured, dtype=float).reshape(-1, 3).T)
+    entries = sorted(
+        (bool(d.kinds), 0.0 if d.kinds or in_order else -scores[k], k)
+        for k, d in enumerate(designs)
+    )
+    ranked: list[_Alone] = []
+    sound = sum(not refused for refused, _, _ in entries)
+    for place, (refused, _, k) in enumerate(entries, start=1):
+        number = place - sound if refused else place
+        delivered = not refused and (in_order or number <= task.rank.deliver)
+        ranked.append(
+            replace(designs[k], number=number, delivered=delivered, score=float(scores[k]))
+        )
+    return tuple(ranked)
+
+
+def wishes_of(task: Task, drive: Drive) -> Wishes:
+    """The wishes of a task in radians, lengths and complex points, for one driven link."""
+    wanted = task.wanted
+    reach = np.array([position.tolerance for position in task.positions])
+    # five poses are met within their tolerances, of more no others are kept
+    judged = task.kind != "motion" and reach.any()
+    points = np.array([complex(*position.point) for position in task.positions])
+    return Wishes(
+        ordered=wanted.ordered and not _is_timed_around(task),
+        range=_range(task, wanted, drive),
+        beyond=_beyond(task),
+        transmission=task.in_radians(wanted.transmission),
+        region=np.array([complex(*corner) for corner in wanted.region]),
+        shortest=wanted.shortest,
+        longest=wanted.longest,
+        ratio=wanted.ratio,
+        obstacles=np.array(wanted.obstacles, dtype=float).reshape(-1, 3),
+        points=points[: len(points) * judged],
+        reach=reach[: len(reach) * judged],
+    )
+
+
+def _is_timed_around(task: Task) -> bool:
+    """Whether given inputs rise or fall by a whole turn: the first and last position then have one
+    input, and the given order is theirs.
+    """
+    given = [position.input for position in task.positions]
+    if len(given) < 2 or any(value is None for value in given):
+        return False
+    steps = np.diff(np.array(given, dtype=float))
+    monotone = bool((steps > 0.0).all() or (steps < 0.0).all())
+    return monotone and abs(steps.sum()) >= task.angle.turn * (1.0 - EQUAL_ROWS)
+
+
+def _range(task: Task, wanted: Wanted, drive: Drive) -> Range | None:
+    if wanted.turns_fully:
+        return Range(turn=True)
+    if wanted.range is None:
+        fitted = task.kind == "path" and task.is_approximate
+        return Range(turn=True) if fitted and is_closed(task) else None
+    start, stop = wanted.range
+    if drive.turns:
+        start, stop = task.in_radians(start), task.in_radians(stop)
+    return Range(start=start, stop=stop)
+
+
+def _beyond(task: Task) -> float:
+    """How far the range of a function reaches beyond its first and last precision point [rad]."""
+    goal = task.function
+    if goal is None or goal.pairs or goal.input is None:
+        return 0.0
+    return task.in_radians(float(abs(goal.points()[0][0] - goal.input[0])))
+
+
+def _ranked(task: Task, judged: list[JudgedDesigns]) -> Iterator[SynthesizedDesign]:
+    """Sound designs by falling score, then the others in the order found."""
+    entries = [
+        (not sound, 0.0 if not sound else -float(score), group, k, float(score))
+        for group, part in enumerate(judged)
+        for k, (sound, score) in enumerate(
+            zip(part.verdicts.sound, _scores_of(task, part), strict=True)
+        )
+    ]
+    entries.sort()
+    numbers = {False: 0, True: 0}
+    for refused, _, group, k, score in entries:
+        numbers[bool(refused)] += 1
+        number = numbers[bool(refused)]
+        yield SynthesizedDesign(
+            task=task,
+            number=number,
+            group=judged[group],
+            index=k,
+            delivered=not refused and number <= task.rank.deliver,
+            score=score,
+        )
+
+
+def _scores_of(task: Task, part: JudgedDesigns) -> Array:
+    return _scores(task, part.verdicts.transmission, part.verdicts.size, part.given.miss)
+
+
+def _scores(task: Task, transmission: Array, sizes: Array, miss: Array) -> Array:
+    """Weighted means of transmission, smallness and exactness, (D,), each from 0 to 1."""
+    rank, (size, usual_miss) = task.rank, _task_sizes(task, sizes)
+    with np.errstate(invalid="ignore"):
+        parts = [
+            (rank.transmission, transmission / _RIGHT),
+            (rank.size, size / (size + sizes)),
+            (rank.error, 1.0 / (1.0 + miss / usual_miss)),
+        ]
+    total = sum(weight for weight, _ in parts) or 1.0
+    return np.asarray(sum(weight * np.nan_to_num(score) for weight, score in parts) / total)
+
+
+def _task_sizes(task: Task, sizes: Array) -> tuple[float, float]:
+    """A length of the task's size, or the median size of designs (D,) for goals alone, and what
+    misses are compared with, of their own unit; those of goals alone are relative.
+    """
+    goal = task.function
+    if task.has_goals_alone:
+        known = sizes[np.isfinite(sizes)]
+        return float(np.median(known)) if len(known) else 1.0, 1.0
+    if goal is not None and "slider-crank" not in task.mechanisms:
+        return task.given.ground, 1.0
+    points = np.array([complex(*position.point) for position in task.positions] or [0.0])
+    points = points if goal is None else goal.points()[1]
+    span = float(np.abs(points - points.mean()).max()) or 1.0
+    return span, span
+
+
+def _dyads(found: Found) -> Iterator[Dyad]:
+    assert found.dyads is not None
+    for kind, moving, fixed, normal, error, refusal in found.dyads.dyads():
+        yield Dyad(
+            kind=kind,
+            moving=(moving.real, moving.imag),
+            fixed=(fixed.real, fixed.imag),
+            normal=(normal.real, normal.imag) if normal else None,
+            proved=refusal is Refusal.NONE,
+            error=error,
+            message=refusal.value,
+        )

@@ -1,0 +1,523 @@
+"""Watt-II six-bars of a task: placed as the task measures angles, and judged loop by loop."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Iterator, Mapping
+from dataclasses import dataclass
+from functools import cached_property
+from itertools import combinations
+from typing import Any
+
+import numpy as np
+
+from linkwork.core.foundation.arrays import Array, ComplexArray, IndexArray
+from linkwork.core.foundation.errors import internal
+from linkwork.core.foundation.names import GROUND
+from linkwork.core.foundation.rounding import UNIT_ROUNDOFF
+from linkwork.core.foundation.statuses import Completeness
+from linkwork.core.foundation.units import FULL_TURN
+from linkwork.core.mechanism.inputs import Input
+from linkwork.core.mechanism.linkage import Linkage
+from linkwork.synthesis.defects.verdicts import Defect, DefectKind
+from linkwork.synthesis.improvement.proved_design import proved_design
+from linkwork.synthesis.loops.candidates import Candidates, Drive, LoopKind
+from linkwork.synthesis.loops.driven_loop import NOWHERE, Travel, driven_loops, travel_of
+from linkwork.synthesis.six_bars.watt import PAIRS, WattSixBars, watt_six_bars
+from linkwork.synthesis.solvers.improved_mechanism import ImprovedMechanism, SweptDesign
+from linkwork.synthesis.tasks.conditions import Wishes
+from linkwork.synthesis.tasks.task import WATT_II, Task
+
+_WATT_GROUP_ROUNDING = 16.0 * UNIT_ROUNDOFF  # of a sum of few products, relative to its largest
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class WattGroup:
+    """D six-bars at the N positions of a task.
+
+    Parameters
+    ----------
+    task : Task
+    first, second : Candidates
+        The four-bars A0 A B B0, with the crank, and B0 C D C0, whose driven link is the bell crank.
+    inputs : (N,)
+        Angles of the crank from its first one, unwrapped [rad].
+    """
+
+    task: Task
+    first: Candidates
+    second: Candidates
+    inputs: Array
+
+    def __len__(self) -> int:
+        return len(self.first)
+
+    @cached_property
+    def travels(self) -> tuple[Travel, Travel]:
+        """The way of both loops through the positions."""
+        # the order is that of the inputs of the task
+        one, other = (
+            travel_of(driven_loops(loop, Drive.A0), None, ordered=False)
+            for loop in (self.first, self.second)
+        )
+        return one, other
+
+    def points(self, k: int) -> dict[str, complex]:
+        """The points of a design at the first position [length]."""
+        one, other = self.first, self.second
+        places = {
+            "A0": one.fixed_a[k], "B0": one.fixed_b[k], "C0": other.fixed_b[k],
+            "A": one.moving_a[k, 0], "B": one.moving_b[k, 0],
+            "C": other.moving_a[k, 0], "D": other.moving_b[k, 0],
+        }  # fmt: skip
+        return {name: complex(place) for name, place in places.items()}
+
+    def defect(self, k: int) -> Defect | None:
+        """The circuit or branch defect of a design, or why it is not decided."""
+        travels = dict(zip(("A0 A B B0", "B0 C D C0"), self.travels, strict=True))
+        return next(self._defects(travels, k), None)
+
+    def _defects(self, travels: dict[str, Travel], k: int) -> Iterator[Defect]:
+        decided = {name: travel for name, travel in travels.items() if travel.decided[k]}
+        for kind, word in ((DefectKind.CIRCUIT, "circuit"), (DefectKind.BRANCH, "branch")):
+            for name, travel in decided.items():
+                after = int(getattr(travel, word)[k]) + 1
+                if after != NOWHERE + 1:
+                    told = f"{word} of the loop {name} changes between positions {after} and"
+                    yield Defect(
+                        kind=kind, between=(after, after + 1), message=f"{told} {after + 1}"
+                    )
+        for name in travels.keys() - decided.keys():
+            told = f"not proved: to rounding, the loop {name} is at a dead point or change point"
+            yield Defect(kind=DefectKind.NOT_PROVED, between=None, message=told)
+
+
+def watt_group(task: Task, found: WattSixBars, wanted: IndexArray, zero: Array | None) -> WattGroup:
+    """The six-bars of a task.
+
+    Parameters
+    ----------
+    task : Task
+    found : WattSixBars
+    wanted : (N,)
+        The task's positions among the nine.
+    zero : (2,), optional
+        Angles of crank and rocker at the first position [rad]; without them the fixed pivots are
+        given, or level.
+    """
+    a, b, c, e = found.arms.T
+    count = len(found)
+    crank, rocker = np.exp(1j * found.inputs), np.exp(1j * found.outputs)
+    origin, first, second = (np.zeros(count, dtype=complex), *_grounds(task, found, zero))
+    turns = found.turns
+
+    def placed(place: ComplexArray, ground: ComplexArray, arm: ComplexArray) -> ComplexArray:
+        moved: ComplexArray = (place[:, None] + ground[:, None] * arm)[:, wanted]
+        return moved
+
+    pivots = task.given.fixed_pivots
+    if pivots:
+        origin = origin + complex(*pivots[0])
+    centre, last = origin + first, origin + first + second
+    size = np.maximum(np.abs(first), np.abs(second))
+    far = np.abs(np.stack([origin, centre, last])).max(axis=0)
+    error = found.error * size + _WATT_GROUP_ROUNDING * (
+        far + size * np.abs(found.arms).max(axis=1)
+    )
+    one = _four_bars(
+        (origin, centre),
+        (
+            placed(origin, first, a[:, None] * crank),
+            placed(centre, first, b[:, None] * turns),
+        ),
+        error,
+    )
+    other = _four_bars(
+        (centre, last),
+        (
+            placed(centre, second, c[:, None] * turns),
+            placed(last, second, e[:, None] * rocker),
+        ),
+        error,
+    )
+    return WattGroup(task=task, first=one, second=other, inputs=found.inputs[wanted])
+
+
+def _grounds(
+    task: Task, found: WattSixBars, zero: Array | None
+) -> tuple[ComplexArray, ComplexArray]:
+    """B0 - A0 and C0 - B0 (D,): as the pivots are given, or turned to the start angles.
+
+    The first ground is 1 long; the second four-bar is as large as the first one.
+    """
+    pivots = [complex(*pivot) for pivot in task.given.fixed_pivots]
+    ones = np.ones(len(found), dtype=complex)
+    if pivots:
+        return ones * (pivots[1] - pivots[0]), ones * (pivots[2] - pivots[1])
+    a, b, c, e = found.arms.T
+    first, second = (
+        np.abs(np.stack([x, y, 1.0 + y - x, ones])).max(axis=0) for x, y in ((a, b), (c, e))
+    )
+    ratio = first / second
+    if zero is None:
+        return ones, ones * ratio
+    return (
+        np.exp(1j * zero[0]) * np.abs(a) / a,
+        ratio * np.exp(1j * zero[1]) * np.abs(e) / e,
+    )
+
+
+def _four_bars(
+    fixed: tuple[ComplexArray, ComplexArray],
+    moving: tuple[ComplexArray, ComplexArray],
+    error: Array,
+) -> Candidates:
+    count = len(error)
+    return Candidates(
+        kind=LoopKind.FOUR_BAR,
+        fixed_a=fixed[0],
+        fixed_b=fixed[1],
+        direction=np.zeros(count, dtype=complex),
+        moving_a=moving[0],
+        moving_b=moving[1],
+        guided=moving[0],
+        error=error,
+        miss=np.zeros(count),
+    )
+
+
+# ----------------------------------------------------------------------
+# A Watt-II six-bar as the description of an ordinary mechanism, in file units.
+
+
+ERROR = "structural_error"
+_LINKS = {
+    GROUND: ("A0", "B0", "C0"),
+    "crank": ("A0", "A"),
+    "coupler": ("A", "B"),
+    "bell_crank": ("B0", "B", "C"),
+    "rod": ("C", "D"),
+    "rocker": ("C0", "D"),
+}
+_BARS = tuple(
+    pair for name, own in _LINKS.items() if name != GROUND for pair in combinations(own, 2)
+)
+#: The sides of all links, ground included.
+SIDES = (*_BARS, *combinations(_LINKS[GROUND], 2))
+_STEP = math.pi / 180.0  # of the table [rad]
+_WATT_LINKAGE_ROUNDING = 1e-12  # of a few angles [rad]
+#: Of angles of positions [rad].
+ROUNDED_ANGLE = 1e-9
+
+
+def first_angle(group: WattGroup, k: int, wishes: Wishes) -> float:
+    """The angle of the crank at the first position, in the turn in which the wanted range, or else
+    the task, has it [rad].
+    """
+    points, goal, wanted = group.points(k), group.task.function, wishes.range
+    crank = points["A"] - points["A0"]
+    angle = math.atan2(crank.imag, crank.real)
+    if wanted is not None and not wanted.turn:
+        least = min(wanted.start, wanted.stop) - ROUNDED_ANGLE
+        return angle + FULL_TURN * math.ceil((least - angle) / FULL_TURN)
+    if goal is None or goal.input is None:
+        # without start angles in the first turn
+        return angle if angle > -_WATT_LINKAGE_ROUNDING else angle + FULL_TURN
+    given = group.task.in_radians(goal.precision_points()[0][0])
+    return angle + FULL_TURN * round((given - angle) / FULL_TURN)
+
+
+def driven_range(group: WattGroup, k: int, wishes: Wishes) -> tuple[float, float]:
+    """The driven range: as wanted, else the range of the function, or its pairs [rad]."""
+    task, wanted, start = group.task, wishes.range, first_angle(group, k, wishes)
+    goal, inputs = task.function, group.inputs
+    if wanted is not None:
+        turn = math.copysign(FULL_TURN, inputs[-1] - inputs[0])
+        return (start, start + turn) if wanted.turn else (wanted.start, wanted.stop)
+    if goal is not None and goal.of and goal.input is not None:
+        return task.in_radians(goal.input[0]), task.in_radians(goal.input[1])
+    low, high = float(inputs.min()), float(inputs.max())
+    if inputs[-1] < inputs[0]:
+        low, high = high, low
+    return start + low, start + high
+
+
+def watt_linkage(group: WattGroup, k: int, wishes: Wishes, name: str) -> Linkage:
+    """The description of a design."""
+    task, points = group.task, group.points(k)
+    goal = task.function
+    formula = "" if goal is None else goal.formula("crank", "rocker", task.angle)
+    ends = driven_range(group, k, wishes)
+    start, stop = (task.angle.from_radians(end) for end in ends)
+    count = max(1, math.ceil(abs(ends[1] - ends[0]) / _STEP - _WATT_LINKAGE_ROUNDING))
+    return Linkage(
+        name=name,
+        purpose=task.purpose,
+        length=task.length,
+        angle=task.angle,
+        points={point: (place.real, place.imag) for point, place in points.items()},
+        links=_LINKS,
+        lengths={f"{p} {q}": abs(points[q] - points[p]) for p, q in _BARS},
+        inputs=(Input(link="crank", start=start, stop=stop, step=(stop - start) / count),),
+        outputs={ERROR: formula} if formula else {},
+    )
+
+
+def swept_mechanism(group: WattGroup, k: int, wishes: Wishes) -> ImprovedMechanism:
+    """A design moved through its driven range, each row with its proof."""
+    task = group.task
+    design = proved_design(watt_linkage(group, k, wishes, task.name))
+    return ImprovedMechanism(task=task, improved=design, wishes=wishes)
+
+
+# ----------------------------------------------------------------------
+# A Watt-II six-bar of a task, with the verdict on it.
+
+
+@internal("group", "index", "wishes", "changed", "swept", "linkage", "kinds")
+@dataclass(frozen=True, kw_only=True, eq=False)
+class WattDesign(SweptDesign):
+    """One Watt-II six-bar with its verdict.
+
+    Parameters
+    ----------
+    group : WattGroup
+        All six-bars of the task.
+    index : int
+        Its place among them.
+    wishes : Wishes
+        Those of the task, in radians.
+    changed : Defect, optional
+        The change of circuit or branch of one of its loops, or that this is not decided.
+    swept : ImprovedMechanism, optional
+        Its motion through the driven range, of a design without such a change.
+
+    Examples
+    --------
+    >>> import linkwork as lw
+    >>> from linkwork.synthesis.solvers.watt import WattDesign
+    >>> issubclass(WattDesign, lw.JudgedDesign)
+    True
+    """
+
+    group: WattGroup
+    index: int
+    wishes: Wishes
+    changed: Defect | None
+    swept: ImprovedMechanism | None
+
+    @classmethod
+    def of(cls, group: WattGroup, k: int, wishes: Wishes) -> WattDesign:
+        """The k-th six-bar, judged."""
+        changed = group.defect(k)
+        swept = None if changed else swept_mechanism(group, k, wishes)
+        return cls(
+            task=group.task, group=group, index=k, wishes=wishes, changed=changed, swept=swept
+        )
+
+    def __repr__(self) -> str:
+        found = ", ".join(kind.value for kind in self.kinds) or "sound"
+        return f"<WattDesign {self.number}: {found}>"
+
+    @property
+    def mechanism(self) -> str:
+        """The kind of mechanism."""
+        return WATT_II
+
+    @property
+    def driven(self) -> str:
+        """The fixed pivot of the driven link."""
+        return Drive.A0.value
+
+    @property
+    def numbers(self) -> dict[str, float]:
+        """The numbers that vary; none, since all of them are found."""
+        return {}
+
+    @cached_property
+    def points(self) -> dict[str, complex]:
+        """The points at the first position [length]."""
+        return self.group.points(self.index)
+
+    @property
+    def inputs(self) -> tuple[float, ...]:
+        """The inputs at the positions [file units]."""
+        radians = self.group.inputs + self._first_angle
+        return tuple(map(self.task.angle.from_radians, radians.tolist()))
+
+    @property
+    def first_input(self) -> float:
+        """The input at the first position [file units]."""
+        return self.task.angle.from_radians(self._first_angle)
+
+    @property
+    def _first_angle(self) -> float:
+        return first_angle(self.group, self.index, self.wishes)
+
+    @cached_property
+    def linkage(self) -> Linkage:
+        """The mechanism."""
+        return watt_linkage(self.group, self.index, self.wishes, self._name)
+
+    @cached_property
+    def moved(self) -> ImprovedMechanism:
+        """Its motion through the driven range, also of a design that changes branch or circuit."""
+        return self.swept or swept_mechanism(self.group, self.index, self.wishes)
+
+    @property
+    def transmission(self) -> float:
+        """A lower bound of the least transmission angle of both loops in the driven range, NaN for
+        a design that changes branch or circuit [file's angle unit].
+        """
+        return float("nan") if self.swept is None else self.swept.transmission
+
+    @cached_property
+    def size(self) -> float:
+        """The longest side of a link, or distance of fixed pivots [length]."""
+        return max(self._sides)
+
+    @property
+    def shortest(self) -> float:
+        """The shortest side of a link, or distance of fixed pivots [length]."""
+        return min(self._sides)
+
+    @property
+    def _sides(self) -> list[float]:
+        return [abs(self.points[q] - self.points[p]) for p, q in SIDES]
+
+    @cached_property
+    def error(self) -> float:
+        """The largest structural error in the rows of the function's own range, 0 for pairs, NaN
+        for a design that changes branch or circuit [file's angle unit].
+        """
+        if self.swept is None:
+            return float("nan")
+        motion, described = self.swept.improved.motion, self.swept.improved.description
+        goal = self.task.function
+        if motion is None or ERROR not in described.outputs or goal is None:
+            return 0.0
+        found = motion.found
+        wrong = goal.errors(motion["crank"][found], motion["rocker"][found], self.task.angle.turn)
+        return float(np.abs(wrong).max(initial=0.0))
+
+    @property
+    def error_unit(self) -> str:
+        """The unit of the error."""
+        return self.task.angle.value
+
+    @property
+    def kinds(self) -> tuple[DefectKind, ...]:
+        """The kinds of its defects; none for a sound design."""
+        return tuple(defect.kind for defect in self.defects)
+
+    @cached_property
+    def defects(self) -> tuple[Defect, ...]:
+        """Its defects in words; none for a sound design.
+
+        Both loops are on one side at all positions, and a sweep without a dead point, each row
+        proved, leads from the first position through the driven range: it passes all of them.
+        """
+        if self.changed is not None:
+            return (self.changed,)
+        swept = () if self.swept is None else self.swept.defects
+        return (*self._outside(), *swept)
+
+    def _outside(self) -> Iterator[Defect]:
+        if self.wishes.range is not None and self.wishes.range.turn:
+            return
+        low, high = sorted(driven_range(self.group, self.index, self.wishes))
+        places = self.group.inputs + self._first_angle
+        outside = (places < low - ROUNDED_ANGLE) | (places > high + ROUNDED_ANGLE)
+        if outside.any():
+            told = f"position {outside.argmax() + 1} is outside the driven range"
+            yield Defect(kind=DefectKind.RANGE, between=None, message=told)
+
+    def _details(self) -> Mapping[str, Any]:
+        swept = self.swept
+        return {
+            "inputs": list(self.inputs),
+            "proved_in_motion": [] if swept is None else list(swept.proved_in_motion),
+            "tested_in_rows": [] if swept is None else list(swept.tested_in_rows),
+        }
+
+
+# ----------------------------------------------------------------------
+# Functions by Watt-II six-bars: all of them through nine pairs, or through fewer with samples.
+
+
+_EQUAL_ANGLES = 1e-9  # rad: angles that differ by whole turns
+
+
+def solve_watt(
+    task: Task, wishes: Wishes, progress: Callable[[float], None] | None
+) -> tuple[tuple[WattDesign, ...], WattSixBars, tuple[Completeness, str]]:
+    """Designs that are not ranked yet, the solutions, and whether they are complete.
+
+    Raises
+    ------
+    MechanismError
+        If two pairs are the same but for whole turns.
+    """
+    goal = task.function
+    assert goal is not None, "a task of functions has one"
+    inputs, outputs = (values * task.angle.radians for values in goal.precision_points())
+    _refuse_equal(task, inputs, outputs)
+    every, wanted = _nine_pairs(np.stack([inputs, outputs]))
+    found = watt_six_bars(*every, progress=progress)
+    zero = np.array([inputs[0], outputs[0]]) if goal.starts_fixed else None
+    group = watt_group(task, found, wanted, zero)
+    designs = tuple(WattDesign.of(group, k, wishes) for k in range(len(group)))
+    return designs, found, _completeness(found, len(inputs))
+
+
+def _completeness(solved: WattSixBars, given: int) -> tuple[Completeness, str]:
+    roots, grade = solved.roots, solved.completeness
+    found = f"{len(roots.x)} of {roots.paths} solutions found"
+    if given < PAIRS:
+        more = PAIRS - given
+        told = f"a sample: {given} pairs leave a family; {more} more were taken between them"
+        return Completeness.SAMPLED, f"{told} ({found})"
+    if grade.complete:
+        return grade, f"{grade.value} ({found})"
+    why = "other paths met or were lost"
+    if len(roots.x) == roots.paths:
+        why = f"{np.count_nonzero(~solved.proved)} of the real ones without a proof"
+    return grade, f"not proved: {found}, {why}"
+
+
+def _refuse_equal(task: Task, inputs: Array, outputs: Array) -> None:
+    """Two pairs in which both links point the same way are one condition."""
+    for k in range(len(inputs)):
+        for j in range(k):
+            apart = np.array([inputs[k] - inputs[j], outputs[k] - outputs[j]])
+            if np.abs(apart - FULL_TURN * np.round(apart / FULL_TURN)).max() < _EQUAL_ANGLES:
+                told = f"is pair {j + 1} after whole turns: leave one out"
+                task.refuse([(("function", "pairs", k), told)])
+
+
+def _nine_pairs(pairs: Array) -> tuple[Array, IndexArray]:
+    """Nine pairs (2, 9) with the places of the given ones (2, N) among them.
+
+    Those that are missing lie in the middle of the widest steps of the input, on the cubic through
+    four neighbours.
+    """
+    places = np.arange(pairs.shape[1], dtype=float)
+    while len(places) < PAIRS:
+        at = np.interp(places, np.arange(pairs.shape[1]), pairs[0])
+        k = int(np.abs(np.diff(at)).argmax())
+        places = np.insert(places, k + 1, 0.5 * (places[k] + places[k + 1]))
+    every = np.stack([_between(row, places) for row in pairs])
+    return every, np.flatnonzero(places == np.floor(places))
+
+
+def _between(values: Array, places: Array) -> Array:
+    """Values (N,) at places between their indices: the cubic through the four nearest ones."""
+    first = np.clip(np.floor(places).astype(int) - 1, 0, len(values) - 4)
+    found = np.zeros(len(places))
+    for i in range(4):
+        weight = np.ones(len(places))
+        for j in range(4):
+            if i != j:
+                weight *= (places - first - j) / (i - j)
+        found += weight * values[first + i]
+    return found

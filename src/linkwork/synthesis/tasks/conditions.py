@@ -1,0 +1,392 @@
+"""What a task gives: positions, pivots and lengths, wishes, and the ranking; in file units."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, field
+from itertools import combinations, pairwise
+
+import numpy as np
+
+from linkwork.core.foundation.arrays import Array, BoolArray, ComplexArray, CountArray
+from linkwork.core.foundation.rounding import EPSILON, EQUAL_ROWS, UNIT_ROUNDOFF
+from linkwork.core.results.quantities.rows import TRANSMISSION_ANGLE
+from linkwork.synthesis.improvement.settings import Problems
+from linkwork.synthesis.loops.driven_loop import Range
+from linkwork.synthesis.tasks.curve_file import Curve
+
+#: Lengths that a task of points may give.
+LENGTHS = ("A0 A", "A B", "B0 B", "A0 B0", "A P", "B P")
+_COUPLER = ("A B", "A P", "B P")
+#: Lengths, and pivots by the task's size, that differ by less are those given.
+SAME_GIVEN = 1e-6
+
+Point = tuple[float, float]
+
+
+@dataclass(frozen=True, kw_only=True)
+class PrecisionPosition:
+    """A position through which the guided body, or its point, passes.
+
+    Parameters
+    ----------
+    point : (float, float)
+        Where the guided point is [length].
+    angle : float, optional
+        The angle of the body: with it, a pose [file's angle unit].
+    input : float, optional
+        The crank's angle at this position, of which differences count [file's angle unit].
+    tolerance, angle_tolerance : float
+        How far point and angle may miss.
+    """
+
+    point: Point
+    angle: float | None = None
+    input: float | None = None
+    tolerance: float = 0.0
+    angle_tolerance: float = 0.0
+
+
+@dataclass(frozen=True, kw_only=True)
+class Given:
+    """What the author fixes [length]: pivots, moving ones as they are at the first position, and
+    distances of A0, B0, A, B and P.
+    """
+
+    fixed_pivots: tuple[Point, ...] = ()
+    moving_pivots: tuple[Point, ...] = ()
+    lengths: Mapping[str, float] = field(default_factory=dict)
+
+    @property
+    def ground(self) -> float:
+        """The distance of the first two fixed pivots; without them 1."""
+        first, second, *_ = *self.fixed_pivots, (1.0, 0.0), (0.0, 0.0)
+        return math.dist(first, second)
+
+    @property
+    def coupler_trouble(self) -> str:
+        """Why the given sides of the coupler, if all three are, make no triangle; or ""."""
+        one, other, longest = sorted(self.lengths.get(name, 0.0) for name in _COUPLER)
+        slack = one + other - longest
+        if one <= 0.0 or slack > SAME_GIVEN * longest:
+            return ""
+        if slack < -SAME_GIVEN * longest:
+            return "A B, A P and B P are no triangle: leave one out"
+        return (
+            "A B, A P and B P put P on the line of A and B, where all solutions are double: change "
+            "one of them by a thousandth, or leave it out"
+        )
+
+
+@dataclass(frozen=True, kw_only=True)
+class Wanted:
+    """Wishes, each proved over the whole driven range.
+
+    Parameters
+    ----------
+    turns_fully : bool
+        Whether the driven link makes whole turns.
+    range : (float, float), optional
+        The driven range [file's angle unit, or length].
+    transmission : float
+        The smallest transmission angle allowed [file's angle unit].
+    ordered : bool
+        Whether the positions are passed in their order.
+    region : tuple of points
+        Corners of the polygon that contains all fixed pivots [length].
+    shortest, longest, ratio : float
+        Bounds of lengths, and of the longest over the shortest.
+    obstacles : tuple of (x, y, radius)
+        Circles that no link may meet [length].
+    """
+
+    turns_fully: bool = False
+    range: tuple[float, float] | None = None
+    transmission: float = 0.0
+    ordered: bool = True
+    region: tuple[Point, ...] = ()
+    shortest: float = 0.0
+    longest: float = math.inf
+    ratio: float = math.inf
+    obstacles: tuple[tuple[float, float, float], ...] = ()
+
+
+@dataclass(frozen=True, kw_only=True)
+class Ranking:
+    """Weights of the ranking, and the largest number of designs that are delivered."""
+
+    transmission: float = 1.0
+    size: float = 1.0
+    error: float = 5.0
+    deliver: int = 20
+
+    def problems(self) -> Iterator[tuple[tuple[str | int, ...], str]]:
+        """Weights that rank nothing, with their keys."""
+        weights = {
+            TRANSMISSION_ANGLE.word: self.transmission, "size": self.size, "error": self.error,
+        }  # fmt: skip
+        for name, weight in weights.items():
+            if weight < 0.0:
+                yield ("rank", "by", name), f"must not be negative, got {weight:g}"
+        if not any(weights.values()):
+            yield ("rank", "by"), "has no weight above 0: give one, or leave it out"
+
+
+# ----------------------------------------------------------------------
+# The wishes of a task in numbers: radians, lengths, and complex points.
+
+
+_LEAST = 1e-300  # in place of 0, of which no multiple is large
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Wishes:
+    """What a design must satisfy over its whole motion.
+
+    Parameters
+    ----------
+    ordered : bool
+        Whether the positions are passed in their order.
+    range : Range, optional
+        The driven range; by default from the first position to the last.
+    beyond : float
+        How far the range by default reaches before the first and behind the last position [rad].
+    transmission : float
+        The smallest transmission angle allowed [rad].
+    region : (K,) complex
+        The corners of the polygon that contains the fixed pivots; none: anywhere [length].
+    shortest, longest, ratio : float
+        Bounds of all lengths, and of the longest over the shortest.
+    obstacles : (M, 3)
+        Circles x, y, radius, which no link may meet [length].
+    points, reach : (N,) complex, (N,)
+        The wanted points, and how far each may be missed; none: not asked here [length].
+    """
+
+    ordered: bool = True
+    range: Range | None = None
+    beyond: float = 0.0
+    transmission: float = 0.0
+    region: ComplexArray = field(default_factory=lambda: np.zeros(0, dtype=complex))
+    shortest: float = 0.0
+    longest: float = np.inf
+    ratio: float = np.inf
+    obstacles: Array = field(default_factory=lambda: np.zeros((0, 3)))
+    points: ComplexArray = field(default_factory=lambda: np.zeros(0, dtype=complex))
+    reach: Array = field(default_factory=lambda: np.zeros(0))
+
+    def allows(self, shortest: Array, longest: Array) -> BoolArray:
+        """Whether lengths (D,) are within the bounds."""
+        return np.asarray(
+            (shortest >= self.shortest)
+            & (longest <= self.longest)
+            # a ratio of infinity allows a length of zero
+            & (longest <= self.ratio * np.maximum(shortest, _LEAST))
+        )
+
+    def exceeds(self, guided: ComplexArray, error: Array) -> BoolArray:
+        """Which positions of guided points (D, N) miss theirs by more than allowed, beyond errors
+        (D,).
+        """
+        if not self.reach.size:
+            return np.zeros(guided.shape, dtype=bool)
+        away = np.abs(guided - self.points)
+        rounding = 8.0 * UNIT_ROUNDOFF * np.abs(guided)
+        return np.asarray(~(away <= self.reach + rounding + error[:, None]))
+
+    def within_region(self, points: ComplexArray, error: Array) -> BoolArray:
+        """Whether points (D,) are inside the region, or on its border to their errors."""
+        if not self.region.size:
+            return np.ones(len(points), dtype=bool)
+        start, end = self.region, np.roll(self.region, -1)
+        z = points[:, None]
+        # a ray to the right crosses the border an odd number of times from inside
+        spans = (start.imag > z.imag) != (end.imag > z.imag)
+        with np.errstate(all="ignore"):
+            along = (z.imag - start.imag) / (end.imag - start.imag)
+            crosses = spans & (z.real < start.real + along * (end.real - start.real))
+        inside = crosses.sum(axis=1) % 2 == 1
+        return np.asarray(inside | (distances_to_segments(z, start, end).min(axis=1) <= error))
+
+
+def distances_to_segments(z: ComplexArray, start: ComplexArray, end: ComplexArray) -> Array:
+    """The distances of points from segments; all broadcast."""
+    along = end - start
+    square = along.real**2 + along.imag**2
+    part = (z - start) * along.conj()
+    with np.errstate(all="ignore"):
+        share = np.where(square > 0, part.real / square, 0.0)
+    return np.asarray(np.abs(z - start - np.clip(share, 0.0, 1.0) * along))
+
+
+# ----------------------------------------------------------------------
+# Wishes and given numbers of a task that no design has together.
+
+
+_Key = tuple[str | int, ...]
+_LENGTHS = ("wanted", "lengths")
+_REGION = ("wanted", "fixed_pivots", "inside")
+_EQUAL = 1e-9  # relative: lengths that differ by less are equal
+
+
+def length_contradictions(wanted: Wanted, sides: Mapping[str, float]) -> Problems:
+    """Bounds that exclude each other, or sides of a four-bar that are given, its ground too."""
+    least, most = wanted.shortest, wanted.longest
+    if least < 0:
+        yield (*_LENGTHS, "least"), f"must not be negative, got {least:g}"
+    elif not least <= most or most <= 0:
+        yield _LENGTHS, f"least = {least:g} and most = {most:g} contradict each other"
+    if wanted.ratio < 1:
+        yield (*_LENGTHS, "ratio"), f"must be 1 or more, got {wanted.ratio:g}"
+    ground = sides.get("A0 B0")
+    if ground is not None and not least <= ground <= most:
+        told = f"exclude the ground of length {ground:g}: change them, or [given] fixed_pivots"
+        yield _LENGTHS, told
+    if len(sides) < 2 or min(sides.values()) <= 0:
+        return
+    short, *_, long = sorted(sides, key=lambda name: sides[name])
+    if sides[long] > wanted.ratio * sides[short] * (1.0 + _EQUAL):
+        given = f'"{long}" = {sides[long]:g} and "{short}" = {sides[short]:g}'
+        yield (*_LENGTHS, "ratio"), f"is exceeded by the given lengths {given}: change one of them"
+    if len(sides) == 4 and 2.0 * sides[long] >= sum(sides.values()):
+        told = f'cannot close a loop: "{long}" is not shorter than the others together; change one'
+        yield ("given", "lengths"), told
+
+
+def place_contradictions(
+    wanted: Wanted, given: Given, positions: Sequence[PrecisionPosition], pivoted: bool
+) -> Problems:
+    """Places in obstacles, pivots outside their region, and equal ones.
+
+    ``positions``: those that are to be met; ``pivoted``: whether all designs have fixed pivots.
+    """
+    if len(given.fixed_pivots) == 2 and given.fixed_pivots[0] == given.fixed_pivots[1]:
+        yield ("given", "fixed_pivots", 1), "is the same place as the first: a link needs two"
+    if wanted.region and _is_flat(wanted.region):
+        yield _REGION, "encloses no area"
+        return
+    for j, k in _crossings(wanted.region)[:1]:
+        told = f"crosses itself between corners {j + 1}, {j + 2} and {k + 1}, "
+        yield _REGION, f"{told}{(k + 1) % len(wanted.region) + 1}: list them around the region"
+        return
+    for k, pivot in enumerate(given.fixed_pivots if wanted.region else ()):
+        if _away(pivot, wanted.region):
+            yield ("given", "fixed_pivots", k), "is outside the region that is wanted for it"
+    for k, (x, y, radius) in enumerate(wanted.obstacles):
+        if radius < 0:
+            yield ("wanted", "clear_of", k), f"has the negative radius {radius:g}"
+        for j, position in enumerate(positions):
+            if math.dist(position.point, (x, y)) + position.tolerance <= radius:
+                told = f"contains the point of position {j + 1}, so no design can be clear of it"
+                yield ("wanted", "clear_of", k), told
+        for key, corners in _pivots(wanted, given) if pivoted else ():
+            if all(math.dist(corner, (x, y)) <= radius for corner in corners):
+                yield key, f"is in circle {k + 1} of clear_of, so no design can be clear of it"
+
+
+def unreached_places(
+    wanted: Wanted, given: Given, positions: Sequence[PrecisionPosition], held: bool
+) -> Problems:
+    """Positions too far from each other for the arms of a coupler, or, if they are to be met within
+    tolerances, from pivots for a crank and an arm.
+    """
+    for j, one in enumerate(positions if math.isfinite(wanted.longest) else ()):
+        others = [
+            (("positions", k, "point"), (other.point,), 4 * wanted.longest + other.tolerance)
+            for k, other in enumerate(positions[j + 1 :], start=j + 1)
+        ]
+        pivots = [(*own, 2 * wanted.longest) for own in _pivots(wanted, given) if held]
+        for key, corners, reach in (*others, *pivots):
+            apart = _away(one.point, corners)
+            if apart - one.tolerance > reach:
+                told = f"is {apart:g} from position {j + 1}, out of reach of links of at most "
+                arms = "two arms reach" if key[0] == "positions" else "crank and arm reach"
+                yield key, f"{told}{wanted.longest:g}: {arms} {reach:g}"
+
+
+def outside_range(
+    inputs: Sequence[float], table: Array, turn: float
+) -> Iterator[tuple[int, float, str]]:
+    """Inputs outside a table, to the accuracy of rows, in whatever turn: their numbers, where they
+    are in its turn, and what is wrong. ``turn``: infinite for lengths.
+    """
+    low, high = float(table.min()), float(table.max())
+    slack, at = EQUAL_ROWS * (high - low), np.array(inputs, dtype=float)
+    if math.isfinite(turn):
+        at = at + np.round((0.5 * (low + high) - at) / turn) * turn
+    for k in np.flatnonzero((at < low - slack) | (at > high + slack)):
+        yield int(k), float(at[k]), f"outside the driven range from {low:g} to {high:g}"
+
+
+def repeated_places(
+    positions: Sequence[PrecisionPosition], curve: Curve | None, turn: float, *, once: bool
+) -> Problems:
+    """Equal positions, and without ``once`` equal neighbours."""
+    listed = list(enumerate(positions))
+    for (j, one), (k, other) in combinations(listed, 2) if once else pairwise(listed):
+        same = one.point == other.point
+        if one.angle is not None and other.angle is not None:
+            same &= math.remainder(one.angle - other.angle, turn) == 0
+        if same and curve is not None:
+            first, again = curve.lines[j], curve.lines[k]
+            yield ("curve", "file"), f"repeats line {first} in line {again}: leave one out"
+        elif same:
+            yield ("positions", k), f"is the same as position {j + 1}: leave one out"
+
+
+def repeated_inputs(
+    positions: Sequence[PrecisionPosition], curve: Curve | None, turn: float
+) -> Problems:
+    """Equal inputs, whole turns aside; the last one of a whole turn may be the first."""
+    known: dict[float, tuple[int, float]] = {}
+    for k, position in enumerate(positions):
+        if position.input is None:
+            continue
+        at = math.remainder(position.input, turn)
+        j, first = known.setdefault(at, (k, position.input))
+        around = (j, k) == (0, len(positions) - 1) and first != position.input
+        if j == k or around:
+            continue
+        if curve is None:
+            yield ("positions", k, "input"), f"is that of position {j + 1}: move one of them"
+        else:
+            told = f"line {curve.lines[k]} has the input of line {curve.lines[j]}"
+            yield ("curve", "file"), f"{told}: move one of them"
+
+
+def _pivots(wanted: Wanted, given: Given) -> Iterator[tuple[_Key, Sequence[Point]]]:
+    """Given fixed pivots, and the corners of the region of others."""
+    for k, pivot in enumerate(given.fixed_pivots):
+        yield ("given", "fixed_pivots", k), (pivot,)
+    if wanted.region:
+        yield _REGION, wanted.region
+
+
+def _away(place: Point, corners: Sequence[Point]) -> float:
+    """The distance of a place from a polygon; 0 inside."""
+    if len(corners) == 1:
+        return math.dist(place, corners[0])
+    region, z = np.array([complex(*corner) for corner in corners]), np.array([complex(*place)])
+    if Wishes(region=region).within_region(z, np.zeros(1))[0]:
+        return 0.0
+    return float(distances_to_segments(z, region, np.roll(region, -1)).min())
+
+
+def _crossings(corners: Sequence[Point]) -> CountArray:
+    """The sides of a polygon that cross another one: the first corners of both, (C, 2)."""
+    z = np.array([complex(*corner) for corner in corners])
+    side = np.roll(z, -1) - z
+    area = (side.conj()[:, None] * (z - z[:, None])).imag
+    # a corner on a side to rounding does not cross it
+    rounding = 8.0 * EPSILON * np.abs(side)[:, None] * np.abs(z).max(initial=0.0)
+    left = np.where(np.abs(area) > rounding, np.sign(area), 0.0)
+    parted = left * np.roll(left, -1, axis=1) < 0  # the ends of each side by each other one
+    return np.argwhere(parted & parted.T)
+
+
+def _is_flat(corners: Sequence[Point]) -> bool:
+    """Whether all corners lie on one line."""
+    (x, y), *others = corners
+    ways = [(u - x, v - y) for u, v in others]
+    return all(a * d - c * b == 0 for (a, b), (c, d) in combinations(ways, 2))

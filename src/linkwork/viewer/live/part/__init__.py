@@ -1,1 +1,0 @@
-"""Drawing of parts: one module for each, named as its part in ``mechanism.part``."""

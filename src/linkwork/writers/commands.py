@@ -1,0 +1,627 @@
+"""Commands that write files."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+import click
+
+from linkwork.api.mechanism import Mechanism
+from linkwork.app.pages.animation import FilmOptions, animation, check_animation
+from linkwork.circuits.results import Circuits
+from linkwork.core.commands.options import (
+    at_option,
+    change_points_option,
+    check_outputs,
+    columns_option,
+    configuration_option,
+    debug_option,
+    file_argument,
+    force_option,
+    forces_of,
+    input_values,
+    json_option,
+    range_options,
+    read_mechanism,
+    set_option,
+    through_option,
+    write_bytes,
+    write_table,
+    write_text,
+)
+from linkwork.core.commands.sweep import answers, check_points, failure_line
+from linkwork.core.commands.terminal import (
+    bad,
+    good,
+    print_json,
+    print_lines,
+    print_page,
+    print_written,
+    progress,
+    sentence,
+    table_lines,
+    title_lines,
+    wrapped,
+)
+from linkwork.core.drawing.picture_file import check_picture, write
+from linkwork.core.drawing.scene import theme_named
+from linkwork.core.foundation.errors import InputError
+from linkwork.core.foundation.statuses import ChangePointPolicy
+from linkwork.core.mechanism.dimensions import Number
+from linkwork.core.results.listing.motion_listing import Column
+from linkwork.core.results.motion import Motion
+from linkwork.readers.formats import WRITERS
+from linkwork.writers.charts.chart import THEMES
+from linkwork.writers.charts.plotting import CIRCUIT_KINDS, PlotKind, circuits_plot, motion_plot
+from linkwork.writers.code.languages import code_of, language_of
+from linkwork.writers.plates.files import check_plate_file, plates_of
+from linkwork.writers.plates.plate import PlateOptions, PlateStack
+from linkwork.writers.plates.stack import stack_of
+from linkwork.writers.report.findings import template_of
+from linkwork.writers.report.report import check_report_file
+from linkwork.writers.robot.files import check_robot_file, robot_of
+
+# ----------------------------------------------------------------------
+# ``linkwork plot``
+
+
+@click.command("plot")
+@file_argument
+@click.option(
+    "-o", "--output", metavar="PATH", required=True, help="Picture file: .png, .svg, .pdf or .tikz."
+)
+@columns_option(
+    "Column of the table to plot; a point for path and hodograph; a pin for transmission. "
+    "Default: unknowns and outputs, traced points, all pins."
+)
+@click.option(
+    "--kind",
+    type=click.Choice([kind.value for kind in PlotKind]),
+    default=PlotKind.CURVES.value,
+    show_default=True,
+    help="Kind of plot.",
+)
+@click.option("--against", metavar="NAME", default="", help="Plot over this column or over time.")
+@click.option("--wrapped", is_flag=True, help="Reduce angles to one turn.")
+@click.option(
+    "--theme", type=click.Choice(list(THEMES)), default="light", show_default=True, help="Colours."
+)
+@range_options
+@configuration_option
+@through_option
+@change_points_option
+@set_option
+@json_option
+@debug_option
+@click.pass_context
+def plot_command(
+    context: click.Context,
+    /,
+    file: str,
+    output: str,
+    names: tuple[str, ...],
+    kind: str,
+    against: str,
+    wrapped: bool,
+    theme: str,
+    as_json: bool,
+    changes: tuple[str, ...],
+    **sweeping: Any,
+) -> None:
+    """Plot columns, paths, hodographs, transmission angles or circuits.
+
+    \b
+    curves        columns over the input, over time or over another column
+    polar         columns as radii over the input angle
+    path          paths of points in the plane
+    hodograph     tips of the velocity and acceleration vectors of a point
+    transmission  transmission angles with the band of 40 to 140 degrees
+    circuits      unknowns over the input for every circuit, limits marked
+    branches      as circuits, with one panel for each branch
+
+    \b
+      linkwork plot rapier.toml -o s16.png --columns s16 --columns s16.d1
+      linkwork plot fourbar.toml -o time.svg --columns B.velocity --against time
+      linkwork plot jansen.toml -o foot.png --kind hodograph --columns F
+      linkwork plot rapier.toml -o quality.png --columns condition
+    """
+    check_picture(output)
+    check_outputs(file, output)
+    mechanism = read_mechanism(file, changes)
+    colours = theme_named(theme, THEMES)
+    if kind in [which.value for which in CIRCUIT_KINDS]:
+        found = _circuits(mechanism, kind, {"against": against, "wrapped": wrapped, **sweeping})
+        with progress("drawing"):
+            write(circuits_plot(found, names, kind=kind), output, theme=colours)
+        print_written(output, as_json)
+        return
+    with progress("sweeping") as tell:
+        motion = mechanism.sweep(progress=tell, **sweeping)
+    if motion.found.any():
+        with progress("drawing"):
+            chart = motion_plot(motion, names, kind=kind, against=against, wrapped=wrapped)
+            write(chart, output, theme=colours)
+        print_written(output, as_json)
+    if not motion.found.all():
+        print_lines(failure_line(motion), err=True)
+        context.exit(0 if answers(motion, through=sweeping["through"]) else 1)
+
+
+def _circuits(mechanism: Mechanism, kind: str, options: dict[str, Any]) -> Circuits:
+    """Find the circuits; reject options of a sweep, which have no effect on whole circuits."""
+    options["change_points"] = options["change_points"] != ChangePointPolicy.STOP.value
+    spelled = {"start": "from", "stop": "to"}
+    ignored = [
+        f"--{spelled.get(name, name).replace('_', '-')}"
+        for name, value in options.items()
+        if value not in ("", None, False)
+    ]
+    if ignored:
+        raise InputError(
+            f"--kind {kind} shows whole circuits: leave out {', '.join(sorted(ignored))}"
+        )
+    with progress("following circuits") as tell:
+        return mechanism.circuits(progress=tell)
+
+
+# ----------------------------------------------------------------------
+# ``linkwork animate``
+
+
+@click.command("animate")
+@file_argument
+@click.option(
+    "-o",
+    "--output",
+    metavar="PATH",
+    required=True,
+    help="Page (.html) or film (.gif, .mp4, .apng, .webp).",
+)
+@click.option("--all", "every", is_flag=True, help="Write a page with all circuits.")
+@click.option(
+    "--sliders",
+    metavar="NAME",
+    multiple=True,
+    help='A number that can be changed in the page, as "O2 A" (repeatable).',
+)
+@click.option(
+    "--fps", type=float, default=25.0, show_default=True, help="Frames per second of a film."
+)
+@click.option("--rows", type=int, help="Number of positions in a film.")
+@click.option("--no-certificates", is_flag=True, help="Skip the proofs (faster).")
+@force_option
+@configuration_option
+@set_option
+@json_option
+@debug_option
+@click.pass_context
+def animate_command(
+    context: click.Context,
+    file: str,
+    output: str,
+    every: bool,
+    sliders: tuple[str, ...],
+    fps: float,
+    rows: int | None,
+    no_certificates: bool,
+    forces: tuple[str, ...],
+    configuration: str | None,
+    changes: tuple[str, ...],
+    as_json: bool,
+) -> None:
+    """Write the motion as an animated page or a film.
+
+    The page works offline in any browser. It plays the motion, follows the
+    crank as you drag it, and shows plots and the certified numbers of every
+    position.
+
+    \b
+      linkwork animate jansen.toml -o jansen.html --all
+      linkwork animate jansen.toml -o jansen.gif --fps 20 --rows 60
+      linkwork animate fourbar.toml -o crossed.mp4 --configuration crossed
+      linkwork animate fourbar.toml -o page.html --sliders "O2 A" --sliders "A B"
+
+    A page with sliders contains the solver of this mechanism: dragging a
+    length solves and proves the whole cycle again, without a network.
+    """
+    options = FilmOptions(fps=fps, rows=rows)
+    kind = check_animation(output, options)
+    if every and kind != "html":
+        raise InputError("--all needs a page: use the suffix .html")
+    if every and configuration is not None:
+        raise InputError("--all shows every circuit: leave out --configuration")
+    if sliders and (kind != "html" or every or configuration is not None):
+        raise InputError(
+            "--sliders needs a page of the sketch's own branch: use the suffix .html, and leave "
+            "out --all and --configuration"
+        )
+    if rows is not None and kind == "html":
+        raise InputError("--rows is for films only: a page shows all rows")
+    if forces and kind != "html":
+        raise InputError("--force needs a page: use the suffix .html")
+    check_outputs(file, output)
+    mechanism = read_mechanism(file, changes)
+    check_points(mechanism)
+    shown = forces_of(mechanism, forces)
+    if sliders:
+        motions = {"motion": mechanism.sweep(certify=not no_certificates)}
+    else:
+        motions = _motions(mechanism, every, configuration, certify=not no_certificates)
+    if not any(motion.found.any() for motion in motions.values()):
+        print_lines([f"Did not write {output}: there is no position to draw."], err=True)
+        context.exit(1)
+    solver = mechanism.solving_page(sliders, motions["motion"]) if sliders else None
+    with progress("drawing") as tell:
+        content = animation(
+            motions,
+            kind,
+            options=options,
+            equations=mechanism.equations().mathml(),
+            loops=mechanism.moving_loops,
+            forces=shown,
+            solver=solver,
+            progress=tell,
+        )
+    write_bytes(output, [content])
+    about = f": {_told(motions, kind)}, {len(content) / 1000:.0f} kB"
+    print_written(output, as_json, about)
+
+
+def _motions(
+    mechanism: Mechanism, every: bool, configuration: str | None, *, certify: bool
+) -> dict[str, Motion]:
+    if every:
+        with progress("following circuits") as tell:
+            return mechanism.cycles(certify=certify, progress=tell)
+    with progress("sweeping") as tell:
+        motion = mechanism.cycle(configuration=configuration, certify=certify, progress=tell)
+    return {configuration or "motion": motion}
+
+
+def _told(motions: dict[str, Motion], kind: str) -> str:
+    rows = sum(int(motion.found.sum()) for motion in motions.values())
+    if kind != "html":
+        return "one cycle"
+    circuits = f"{len(motions)} circuits, " if len(motions) > 1 else ""
+    return f"{circuits}{rows} positions; open it in a browser"
+
+
+# ----------------------------------------------------------------------
+# ``linkwork code``
+
+
+@click.command("code")
+@file_argument
+@click.option(
+    "-o",
+    "--output",
+    metavar="PATH",
+    required=True,
+    help="Program file: .py (NumPy), .m (Octave, MATLAB), .c (C99), .js or .st (IEC 61131-3).",
+)
+@range_options
+@configuration_option
+@set_option
+@json_option
+@debug_option
+def code_command(
+    file: str,
+    output: str,
+    start: Number | None,
+    stop: Number | None,
+    step: Number | None,
+    configuration: str | None,
+    changes: tuple[str, ...],
+    as_json: bool,
+) -> None:
+    """Write the solver as a program in another language.
+
+    The program has a function of the input that returns every unknown, point
+    and output with its derivatives, and a main program that prints the table
+    as CSV. It needs no Linkwork.
+
+    \b
+      linkwork code rapier.toml -o rapier.py
+      linkwork code rapier.toml -o rapier.c --from 0 --to 90 --step 0.5
+      linkwork code fourbar.toml -o crossed.js --configuration crossed
+    """
+    path = Path(output)
+    language_of(path)
+    check_outputs(file, output)
+    mechanism = read_mechanism(file, changes)
+    with progress("sweeping") as tell:
+        motion = mechanism.sweep(
+            start=start, stop=stop, step=step, configuration=configuration, progress=tell
+        )
+    with progress("writing the program"):
+        text = code_of(mechanism.model, motion, path)
+    write_text(output, [text])
+    print_written(output, as_json)
+
+
+# ----------------------------------------------------------------------
+# ``linkwork export``
+
+
+@click.command("export")
+@file_argument
+@click.option(
+    "--as", "form", type=click.Choice(WRITERS), required=True, help="The format of the text."
+)
+@click.option("-o", "--output", metavar="PATH", help="Write to this file instead of the terminal.")
+@at_option
+@configuration_option
+@set_option
+@json_option
+@debug_option
+def export_command(
+    file: str,
+    form: str,
+    output: str | None,
+    at: tuple[str, ...],
+    configuration: str | None,
+    changes: tuple[str, ...],
+    as_json: bool,
+) -> None:
+    """Write the mechanism as a text of another program.
+
+    A link of PMKS+, JSON of pylinkage or an expression of Pyslvs, in the
+    start position, --at. What is left out is listed on the error stream.
+
+    \b
+      linkwork export hoeken --as pmks
+      linkwork export fourbar.toml --as pylinkage -o fourbar.json
+    """
+    check_outputs(file, output)
+    mechanism = read_mechanism(file, changes)
+    made = mechanism.exported(form, input_values(mechanism, at), configuration=configuration)
+    if output is not None:
+        write_text(output, [made.text])
+    if as_json:
+        notes = [{"what": own.what, "places": list(own.places)} for own in made.left_out]
+        print_json({"text": made.text, "left_out": notes, "written": [output] if output else []})
+        return
+    click.echo(made.text if output is None else f"Wrote {output}.\n", nl=False)
+    lines = [line for own in made.left_out for line in wrapped(f"left out: {own}", "", "  ")]
+    if lines:
+        print_lines(lines, err=True)
+
+
+# ----------------------------------------------------------------------
+# ``linkwork report``
+
+
+@click.command("report")
+@file_argument
+@click.option(
+    "-o", "--output", metavar="PATH", required=True, help="Report: .html, .pdf, .docx or .md."
+)
+@click.option(
+    "--template",
+    metavar="NAME",
+    default="engineer",
+    show_default=True,
+    help="engineer, student, or a template file, which names the sections.",
+)
+@click.option("--title", metavar="TEXT", help="The title; by default the mechanism's name.")
+@click.option("--author", metavar="TEXT", help="Who writes the report.")
+@click.option("--institution", metavar="TEXT", help="University, company or course.")
+@click.option("--date", metavar="TEXT", help="The date as it is printed; none by default.")
+@at_option
+@configuration_option
+@set_option
+@json_option
+@debug_option
+def report_command(
+    file: str,
+    output: str,
+    template: str,
+    at: tuple[str, ...],
+    configuration: str | None,
+    changes: tuple[str, ...],
+    as_json: bool,
+    **head: str | None,
+) -> None:
+    """Write a report of the mechanism, for a design file or as homework.
+
+    Equations, drawings, tables, plots, circuits, forces, what is proved, and
+    the file itself. Sections without content are named with the reason.
+    Markdown has its pictures in the folder NAME-pictures next to it.
+
+    \b
+      linkwork report rapier.toml -o rapier.html
+      linkwork report rapier.toml -o rapier.pdf --template student --at 60
+      linkwork report press.toml -o press.docx --author "A. Student"
+    """
+    check_report_file(Path(output))
+    check_outputs(file, output)
+    template_of(template)
+    mechanism = read_mechanism(file, changes)
+    values = input_values(mechanism, at)
+    with progress("writing the report") as tell:
+        written = mechanism.to_report(
+            output,
+            values,
+            template=template,
+            configuration=configuration,
+            progress=tell,
+            **head,
+        )
+    _report, *pictures = map(str, written)
+    about = f", with pictures in {written[1].parent}: {len(pictures)}" if pictures else ""
+    print_written(output, as_json, about, pictures)
+
+
+# ----------------------------------------------------------------------
+# ``linkwork plates``
+
+
+_SIZES = (
+    ("width", "Width of bars."),
+    ("fillet", "Radius of inner corners between the arms of plates."),
+    ("pin", "Diameter of pins."),
+    ("clearance", "Diameter of holes minus that of pins."),
+    ("kerf", "Width of the cut, halved on either side."),
+    ("thickness", "Thickness of plates."),
+    ("gap", "Least distance of moving plates in one layer."),
+    ("module", "Module of gears that are given by radii."),
+    ("backlash", "Backlash of gears on the pitch circle."),
+    ("sheet", "Width of the sheet of --layout."),
+)
+
+
+def _size_options(command: Any) -> Any:
+    for name, about in reversed(_SIZES):
+        command = click.option(f"--{name}", type=float, metavar="LENGTH", help=about)(command)
+    return command
+
+
+@click.command("plates")
+@file_argument
+@click.option(
+    "-o",
+    "--output",
+    metavar="PATH",
+    required=True,
+    help="File of plates: .dxf, .svg, .stl, .3mf or .step.",
+)
+@_size_options
+@click.option("--labels", is_flag=True, help="Write every plate's name on it, to be engraved.")
+@click.option("--layout", is_flag=True, help="Put the plates side by side on a sheet.")
+@click.option("--bill", metavar="PATH", help="Write the bill of materials as CSV.")
+@range_options
+@configuration_option
+@set_option
+@json_option
+@debug_option
+def plates_command(
+    file: str,
+    output: str,
+    labels: bool,
+    layout: bool,
+    bill: str | None,
+    start: Number | None,
+    stop: Number | None,
+    step: Number | None,
+    configuration: str | None,
+    changes: tuple[str, ...],
+    as_json: bool,
+    **sizes: float | None,
+) -> None:
+    """Write the links as plates to cut or print.
+
+    Links are bars, or plates with arms between three or more holes, the
+    ground is a base plate. They lie in layers in which nothing collides over
+    the whole table, which is proved if possible. Sizes are in the length unit
+    of the file, by default in proportion to the mechanism. Without --layout
+    the plates are assembled.
+
+    \b
+      linkwork plates fourbar.toml -o fourbar.dxf --layout --kerf 0.15
+      linkwork plates fourbar.toml -o fourbar.3mf --layout --bill bill.csv
+      linkwork plates fourbar.toml -o fourbar.svg --width 14 --pin 4
+    """
+    path = Path(output)
+    check_plate_file(path)
+    check_outputs(file, output, bill, as_json=as_json)
+    chosen = {name: size for name, size in sizes.items() if size is not None}
+    options = PlateOptions(labels=labels, **chosen)
+    mechanism = read_mechanism(file, changes)
+    with progress("sweeping") as tell:
+        motion = mechanism.sweep(
+            start=start, stop=stop, step=step, configuration=configuration, progress=tell
+        )
+    with progress("choosing layers") as tell:
+        stack = stack_of(mechanism.model, motion, options, tell)
+    with progress("writing the plates"):
+        content = plates_of(stack, path, layout=layout)
+    write_bytes(output, [content])
+    try:
+        written = [f"Wrote {output}.", *write_table(bill, stack.bill())]
+    except InputError as error:
+        raise InputError(f"{error}; the plates are written to {output}") from None
+    if as_json:
+        names = [name for name in (output, bill) if name is not None]
+        print_json({"written": names, **stack.to_dict()})
+    elif bill != "-":
+        print_page(_page(stack), written)
+
+
+def _page(stack: PlateStack) -> Iterator[str]:
+    """The bill of materials, and what is known of collisions."""
+    count = f"{len(stack.plates)} plates in {stack.layers} layers"
+    yield from title_lines(f"{stack.mechanism}: {count}")
+    yield from table_lines(list(_columns(stack)))
+    yield ""
+    sizes = stack.sizes
+    about = f"Holes {sizes.hole:g} mm, pins {sizes.pin:g} mm, bars {sizes.width:g} mm wide."
+    yield from sentence(str, about)
+    verdict = f"{stack.verdict[0].upper()}{stack.verdict[1:]}."
+    yield from sentence(good if stack.proved else bad, verdict)
+    for note in stack.notes:
+        yield from sentence(str, f"Note: {note}.")
+
+
+def _columns(stack: PlateStack) -> Iterator[Column]:
+    bill = stack.bill()
+    low, high = (bill[name].tolist() for name in ("lowest layer", "highest layer"))
+    layers = [f"{a}" if a == b else f"{a} to {b}" for a, b in zip(low, high, strict=True)]
+    for name in ("kind", "name"):
+        yield Column(header=name, cells=bill[name].tolist())
+    yield Column(header="layer", cells=layers)
+    for name in ("length", "diameter", "area", "holes"):
+        unit, values = bill.units[name], bill[name].tolist()
+        header = f"{name} {unit}".rstrip()
+        yield Column(header=header, cells=[_cell(x) for x in values], align="point")
+
+
+def _cell(value: float) -> str:
+    return "" if math.isnan(value) else f"{value:.6g}"
+
+
+# ----------------------------------------------------------------------
+# ``linkwork robot``
+
+
+@click.command("robot")
+@file_argument
+@click.option(
+    "-o", "--output", metavar="PATH", required=True, help="Robot file: .mjcf, .urdf or .sdf."
+)
+@at_option
+@configuration_option
+@set_option
+@json_option
+@debug_option
+def robot_command(
+    file: str,
+    output: str,
+    at: tuple[str, ...],
+    configuration: str | None,
+    changes: tuple[str, ...],
+    as_json: bool,
+) -> None:
+    """Write the mechanism for a simulator of robots.
+
+    MJCF (MuJoCo) has the real loops, SDF all joints; URDF has a tree whose
+    joints follow the driven one, their polynomials and limits. All joint
+    values are zero in the start position, --at.
+
+    \b
+      linkwork robot fourbar.toml -o fourbar.mjcf
+      linkwork robot fourbar.toml -o fourbar.urdf --at 60
+    """
+    path = Path(output)
+    suffix = check_robot_file(path)
+    check_outputs(file, output)
+    mechanism = read_mechanism(file, changes)
+    start = mechanism.solve(input_values(mechanism, at), configuration=configuration)
+    motion = None
+    if suffix == ".urdf":
+        with progress("sweeping") as tell:
+            motion = mechanism.sweep(configuration=configuration, progress=tell)
+    write_text(output, [robot_of(mechanism.model, start, motion, path)])
+    print_written(output, as_json)

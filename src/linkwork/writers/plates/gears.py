@@ -1,0 +1,295 @@
+"""Toothed wheels of plates: numbers of teeth, involute outlines, and the proof of a mesh."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
+from fractions import Fraction
+from typing import Any
+
+import numpy as np
+
+from linkwork.core.drawing.wheels import ADDENDUM, DEDENDUM, mesh_phases
+from linkwork.core.foundation.arrays import Array, ComplexArray
+from linkwork.core.foundation.errors import InputError
+from linkwork.core.mechanism.bodies import DiscFigure, Mesh
+from linkwork.core.mechanism.linkage import Linkage
+from linkwork.core.mechanism.part.gears import ToothedPart
+from linkwork.core.mechanism.skeleton import Skeleton
+from linkwork.writers.plates.outlines import Outline, shapely
+from linkwork.writers.plates.plate import Sizes
+
+__all__ = [
+    "FEWEST", "STEPS", "GearMesh", "Wheel", "gear_meshes", "involute_outline", "polygons",
+    "touches",
+]  # fmt: skip
+
+#: Teeth of gears given by radii, at least: no undercut at 20 degrees.
+FEWEST = 18
+_LARGEST_RATIO = 1000  # of whole numbers that stand for a ratio of radii
+_WHOLE = 1e-9  # of a ratio
+_FLANK = 16  # points along a flank
+_IN_GAP = 1e-6  # of a pitch
+#: Positions within one pitch, at most.
+STEPS = 4096
+
+
+@dataclass(frozen=True, kw_only=True)
+class Wheel:
+    """A gear: ``disc`` with its teeth, ``module`` [mm], ``phase``: the direction of its first tooth
+    (of a ring: gap) from its link [rad], ``pressure`` angle [rad], ``backlash`` [mm].
+    """
+
+    disc: DiscFigure
+    module: float
+    phase: float
+    pressure: float
+    backlash: float
+
+    @property
+    def teeth(self) -> int:
+        """The number of teeth."""
+        assert self.disc.teeth is not None
+        return self.disc.teeth
+
+    @property
+    def radii(self) -> tuple[float, float]:
+        """The least and the largest radius of the outline: root and tip, of a ring the reverse."""
+        up, down = (DEDENDUM, ADDENDUM) if self.disc.ring else (ADDENDUM, DEDENDUM)
+        pitch = 0.5 * self.module * self.teeth
+        return pitch - down * self.module, pitch + up * self.module
+
+
+@dataclass(frozen=True, kw_only=True)
+class GearMesh:
+    """Two wheels in mesh, by their numbers in a list of wheels."""
+
+    name: str
+    wheels: tuple[int, int]
+
+
+def gear_meshes(
+    linkage: Linkage,
+    skeleton: Skeleton,
+    sizes: Sizes,
+    millimetres: float,
+    angles: Mapping[str, float],
+    points: Mapping[str, complex],
+) -> tuple[list[Wheel], list[GearMesh]]:
+    """The gears of a mechanism and their meshes.
+
+    Parameters
+    ----------
+    angles : Mapping[str, float]
+        The angle of every link in one position [rad].
+    points : Mapping[str, complex]
+        All points in that position.
+
+    Raises
+    ------
+    InputError
+        If radii have no ratio of whole numbers, or teeth touch.
+    """
+    figures = skeleton.of(Mesh)
+    if not figures:
+        return [], []
+    toothed = dict(_with_teeth([mesh.discs for mesh in figures], sizes, millimetres))
+    pairs = [(toothed[a], toothed[b]) for a, b in (mesh.discs for mesh in figures)]
+    phases = mesh_phases(pairs, angles.__getitem__, points)
+    steep = {
+        part.name: part.pressure(linkage) for part in linkage.parts if isinstance(part, ToothedPart)
+    }
+    wheels: dict[DiscFigure, Wheel] = {}
+    for mesh, pair in zip(figures, pairs, strict=True):
+        for disc in pair:
+            assert disc.teeth is not None
+            module = 2.0 * millimetres * disc.radius / disc.teeth
+            wheels.setdefault(
+                disc,
+                Wheel(
+                    disc=disc,
+                    module=module,
+                    phase=phases[disc] - angles[disc.link],
+                    pressure=steep[mesh.name],
+                    backlash=sizes.backlash_of(module),
+                ),
+            )
+    number = {disc: k for k, disc in enumerate(wheels)}
+    meshes = [
+        GearMesh(name=mesh.name, wheels=(number[a], number[b]))
+        for mesh, (a, b) in zip(figures, pairs, strict=True)
+    ]
+    for mesh, pair in zip(figures, pairs, strict=True):
+        _check_mesh(mesh, pair, phases, wheels, points, millimetres)
+    return list(wheels.values()), meshes
+
+
+def _check_mesh(
+    mesh: Mesh,
+    pair: tuple[DiscFigure, DiscFigure],
+    phases: Mapping[DiscFigure, float],
+    wheels: Mapping[DiscFigure, Wheel],
+    points: Mapping[str, complex],
+    millimetres: float,
+) -> None:
+    """Refuse teeth that do not fall into the gaps of a closed train, and teeth that touch."""
+    one, other = pair
+    assert other.teeth is not None
+    wanted = mesh_phases([pair], lambda _: phases[one], points)[other]
+    pitches = (phases[other] - wanted) * other.teeth / math.tau
+    if abs(pitches - round(pitches)) > _IN_GAP:
+        raise InputError(
+            f'the teeth of "{mesh.name}" do not fall into the gaps: change the numbers of teeth '
+            "of the closed train"
+        )
+    apart = millimetres * abs(points[other.center] - points[one.center])
+    if touches(wheels[one], wheels[other], apart):
+        raise InputError(
+            f'the teeth of "{mesh.name}" touch where they should not, with '
+            f"{one.teeth} and {other.teeth} teeth: give more teeth, or more backlash"
+        )
+
+
+def _with_teeth(
+    meshes: Sequence[tuple[DiscFigure, DiscFigure]], sizes: Sizes, millimetres: float
+) -> Iterator[tuple[DiscFigure, DiscFigure]]:
+    """Every disc with its teeth; those of trains given by radii are chosen."""
+    trains: list[set[DiscFigure]] = []
+    for pair in meshes:
+        joined = [train for train in trains if train & set(pair)]
+        trains = [train for train in trains if train not in joined]
+        trains.append(set(pair).union(*joined))
+    order = list(dict.fromkeys(disc for pair in meshes for disc in pair))
+    for train in trains:
+        discs = [disc for disc in order if disc in train]
+        if all(disc.teeth is not None for disc in discs):
+            yield from ((disc, disc) for disc in discs)
+            continue
+        counts = _whole(discs)
+        least = min(counts)
+        times = math.ceil(FEWEST / least)
+        if sizes.module is not None:
+            wanted = 2.0 * millimetres * discs[counts.index(least)].radius / sizes.module
+            times = max(1, round(wanted / least))
+        known = next((d for d in discs if d.teeth is not None), None)
+        if known is not None and known.teeth is not None:
+            # a wheel with teeth gives its module to the others
+            times = round(Fraction(known.teeth, counts[discs.index(known)]))
+        for disc, count in zip(discs, counts, strict=True):
+            yield disc, replace(disc, teeth=times * count)
+
+
+def _whole(discs: Sequence[DiscFigure]) -> list[int]:
+    """The least whole numbers in the ratio of the radii."""
+    ratios = [disc.radius / discs[0].radius for disc in discs]
+    found = [Fraction(ratio).limit_denominator(_LARGEST_RATIO) for ratio in ratios]
+    if any(abs(float(f) - r) > _WHOLE * r for f, r in zip(found, ratios, strict=True)):
+        raise InputError(
+            f'the radii of gears "{discs[0].name}" have no ratio of whole numbers: give their teeth'
+        )
+    common = math.lcm(*(own.denominator for own in found))
+    whole = [int(own * common) for own in found]
+    divisor = math.gcd(*whole)
+    return [own // divisor for own in whole]
+
+
+def involute_outline(wheel: Wheel, center: complex) -> Outline:
+    """The outline of a gear about a place of its body; that of a ring is its inner edge.
+
+    Raises
+    ------
+    InputError
+        If its teeth are pointed.
+
+    Notes
+    -----
+    The half width of a tooth at radius ρ is π/(2z) + inv α0 - inv α, cos α = r cos α0/ρ, less a
+    quarter of the backlash over r. Below the base circle flanks are straight towards the centre.
+
+    References
+    ----------
+    R. L. Norton, Design of Machinery, section 9.3 (involute tooth form).
+    """
+    pitch = 0.5 * wheel.module * wheel.teeth
+    root, tip = wheel.radii
+    base = pitch * math.cos(wheel.pressure)
+    thinner = wheel.backlash / (4.0 * pitch) * (-1.0 if wheel.disc.ring else 1.0)
+    radii = np.linspace(max(root, base), tip, _FLANK)
+    half = math.pi / (2 * wheel.teeth) + _involute(np.array(wheel.pressure)) - thinner
+    halves = half - _involute(np.arccos(np.minimum(base / radii, 1.0)))
+    if root < base:
+        radii, halves = np.append(root, radii), np.append(halves[0], halves)
+    if halves.min() <= 0.0 or halves.max() >= math.pi / wheel.teeth:
+        raise InputError(
+            f'gear "{wheel.disc.link}" with {wheel.teeth} teeth has pointed teeth: '
+            "more teeth, or less backlash, are needed"
+        )
+    flank = radii * np.exp(1j * halves)
+    tooth = np.concatenate([flank.conj(), flank[::-1]])
+    bulges = np.zeros(len(tooth))
+    bulges[len(flank) - 1] = math.tan(halves[-1] / 2.0)  # over the tip
+    bulges[-1] = math.tan((math.pi / wheel.teeth - halves[0]) / 2.0)  # along the root
+    steps = np.exp(1j * (wheel.phase + math.tau * np.arange(wheel.teeth) / wheel.teeth))
+    return Outline(
+        corners=center + (steps[:, None] * tooth).ravel(), bulges=np.tile(bulges, wheel.teeth)
+    )
+
+
+def _involute(angle: Array) -> Array:
+    found: Array = np.tan(angle) - angle
+    return found
+
+
+def touches(first: Wheel, second: Wheel, apart: float) -> bool:
+    """Whether two gears in mesh touch anywhere within one pitch, and so in any position.
+
+    Notes
+    -----
+    Both are rotated about fixed centres, in so small steps that no point moves more than the least
+    distance found; if that takes too many, they count as touching.
+    """
+    if second.disc.ring:
+        first, second = second, first
+    inside = first.disc.ring
+    pair = [replace(wheel, phase=phase) for wheel, phase in _in_mesh(first, second)]
+    shapes = [involute_outline(wheel, 0j).polygon() for wheel in pair]
+    reach = sum(wheel.radii[1] / wheel.teeth for wheel in pair)
+    count = 64
+    while count <= STEPS:
+        turn = math.tau * np.arange(count) / count
+        ways = (1.0, 1.0 if inside else -1.0)
+        placed = [
+            polygons(place + np.exp(1j * way * turn / wheel.teeth)[:, None] * shape)
+            for place, way, wheel, shape in zip((0j, apart), ways, pair, shapes, strict=True)
+        ]
+        if inside:
+            held = shapely().contains(placed[0], placed[1]).all()
+            distance = shapely().distance(shapely().boundary(placed[0]), placed[1]).min()
+            if not held:
+                return True
+        else:
+            distance = shapely().distance(placed[0], placed[1]).min()
+        if distance <= 0.0:
+            return True
+        # half a step either way
+        moved = math.pi * reach / count
+        if moved < distance:
+            return False
+        count = math.ceil(1.1 * math.pi * reach / distance)
+    return True
+
+
+def _in_mesh(first: Wheel, second: Wheel) -> Iterable[tuple[Wheel, float]]:
+    """Both wheels with phases of mesh on a line of centres along x."""
+    pair = (
+        replace(first.disc, center="1", link="1"),
+        replace(second.disc, center="2", link="2"),
+    )
+    phases = mesh_phases([pair], lambda _: 0.0, {"1": 0j, "2": 1.0 + 0j})
+    return zip((first, second), (phases[disc] for disc in pair), strict=True)
+
+
+def polygons(z: ComplexArray) -> Any:
+    """Polygons of shapely with corners (B, n)."""
+    return shapely().polygons(np.stack([z.real, z.imag], axis=-1))

@@ -1,0 +1,331 @@
+"""Sections about the mechanism itself: summary, drawings, dimensions, equations, iterations."""
+
+from __future__ import annotations
+
+import math
+import platform
+from collections.abc import Iterator
+from importlib import metadata
+
+import numpy as np
+
+from linkwork.core.drawing.annotations import SceneOptions
+from linkwork.core.drawing.mechanism_scene import scene_of
+from linkwork.core.equations.notation import Latex
+from linkwork.core.equations.writing import EquationSheet, MathML
+from linkwork.core.foundation.lanes import phase
+from linkwork.core.foundation.names import canonical, pretty
+from linkwork.core.foundation.statuses import Certification
+from linkwork.core.mechanism.linkage import Draft
+from linkwork.core.mechanism.varied_numbers import varied_numbers
+from linkwork.core.results.listing.check_listing import check_fields, measured_part_columns
+from linkwork.core.results.listing.motion_listing import (
+    Column,
+    certificate_text,
+    changes_text,
+    evidence_fields,
+    fixed,
+    inputs_text,
+    lengths,
+    radius_measure,
+    short,
+    significant,
+    system_columns,
+    trail_columns,
+)
+from linkwork.core.results.motion import Motion
+from linkwork.core.results.quantity import Kind
+from linkwork.core.textfile.writer import part_lines
+from linkwork.writers.formulas.rate_formulas import dimension_kinds
+from linkwork.writers.formulas.traced import traced
+from linkwork.writers.report.document import (
+    Block,
+    Equation,
+    Facts,
+    Figure,
+    Listing,
+    Note,
+    Paragraph,
+    Table,
+    shown_name,
+    split_columns,
+)
+from linkwork.writers.report.findings import Findings, Template
+
+_TABLES = {
+    "dimensions": "Dimensions",
+    "lengths": "Lengths of links",
+    "angles": "Angles of links",
+    "sliders": "Offsets of sliders",
+}
+
+
+def tables(caption: str, columns: list[Column]) -> Iterator[Table]:
+    """One table, or several if it is wider than the page."""
+    for k, part in enumerate(split_columns(columns)):
+        yield Table(caption=caption if not k else f"{caption} (continued)", columns=part)
+
+
+def summary(found: Findings, template: Template) -> Iterator[Block]:
+    """What the mechanism is, and how the file was read."""
+    description = found.model.description
+    given = {"purpose": description.purpose, "source": description.source}
+    units = f"lengths in {description.length}, angles in {description.angle.value}"
+    pairs = [(label, text) for label, text in given.items() if text]
+    pairs += [*check_fields(found.check), ("units", units)]
+    if not found.position.status.ok and found.position.failure is not None:
+        pairs += found.position.failure.sentences()
+    yield Facts(pairs=tuple(pairs), quoted=frozenset(given))
+
+
+def drawing(found: Findings, template: Template) -> Iterator[Block]:
+    """The position with its dimensions, and the paths of traced points."""
+    options = SceneOptions(dimensions=True, title="")
+    scene = scene_of(found.position, found.motion, options=options)
+    hidden = any("input" in question.hide for question in found.model.description.questions)
+    where = "" if hidden else inputs_text(found.position.input, found.position.input_units)
+    traced_points = found.motion is not None and found.motion.skeleton.traced
+    paths = ", with the paths of traced points" if traced_points else ""
+    caption = (
+        f"The mechanism {where}".rstrip() + f"{paths}. Lengths in {found.model.description.length}."
+    )
+    yield Figure(caption=caption, picture=scene)
+
+
+def vectors(found: Findings, template: Template) -> Iterator[Block]:
+    """The loop equations as vectors: a diagram and their sizes and directions."""
+    where = inputs_text(found.position.input, found.position.input_units)
+    options = SceneOptions(vectors=found.vectors, title="", arrows=False)
+    scene = scene_of(found.position, None, options=options)
+    yield Figure(
+        caption=f"The loop equations as vectors, head to tail, {where}".rstrip(" ,") + ".",
+        picture=scene,
+    )
+    unit = found.model.description.length
+    for k, loop in enumerate(found.vectors, 1):
+        sides = [("left", vector) for vector in loop.left]
+        sides += [("right", vector) for vector in loop.right]
+        values = [vector.value for _, vector in sides]
+        angles = [math.degrees(phase(z)) if z else math.nan for z in values]
+        columns = [
+            Column(header="vector", cells=[vector.name for _, vector in sides]),
+            Column(header="side", cells=[side for side, _ in sides]),
+            Column(header=f"size [{unit}]", cells=lengths(map(abs, values)), align="point"),
+            Column(header="direction [deg]", cells=[fixed(a, 3) for a in angles], align="point"),
+            Column(header=f"x [{unit}]", cells=lengths(z.real for z in values), align="point"),
+            Column(header=f"y [{unit}]", cells=lengths(z.imag for z in values), align="point"),
+        ]
+        yield from tables(
+            f"Vectors of loop {k}, {pretty(loop.label)}, {where}".rstrip(" ,"), columns
+        )
+
+
+def dimensions(found: Findings, template: Template) -> Iterator[Block]:
+    """The given numbers by their tables in the file, then the parts."""
+    description = found.model.description
+    kinds = {v.name: v.kind for v in found.model.equations.variables}
+    named = dimension_kinds(traced(description))
+    numbers = [n for n in varied_numbers(description) if n.table != "guess"]
+    for table, caption in _TABLES.items():
+        rows = [n for n in numbers if n.table == table]
+        if not rows:
+            continue
+        units = [
+            found.model.units.of(named.get(canonical(n.key), Kind.NUMBER))
+            if table == "dimensions"
+            else n.unit(description, kinds)
+            for n in rows
+        ]
+        written = [n.written(description) for n in rows]
+        formulas = [f"= {given}" if isinstance(given, str) else "" for given in written]
+        # given numbers as they are, values of formulas rounded
+        cells = [
+            short(n.of(description), 7 if formula else 10)
+            for n, formula in zip(rows, formulas, strict=True)
+        ]
+        columns = [
+            Column(header="name", cells=[shown_name(n.name) for n in rows]),
+            Column(header="value", cells=cells, align="point", units=units),
+        ]
+        if any(formulas):
+            columns.append(Column(header="formula", cells=formulas))
+        yield from tables(caption, columns)
+    yield from _points(found)
+    if found.check.measured:
+        links, points, values = zip(*found.check.measured, strict=True)
+        columns = [
+            Column(header="link", cells=links),
+            Column(header="points", cells=points),
+            Column(header=f"length [{description.length}]", cells=lengths(values), align="point"),
+        ]
+        yield from tables("Lengths measured in the sketch", columns)
+    if found.check.measured_in_parts:
+        columns = measured_part_columns(found.check)
+        yield from tables("Measured in the sketch for parts", columns)
+    parts = part_lines(description)
+    if parts:
+        names, given = zip(*parts, strict=True)
+        columns = [Column(header="table", cells=names), Column(header="given", cells=given)]
+        yield from tables("Further data of the file, in its words and units", columns)
+
+
+def _points(found: Findings) -> Iterator[Table]:
+    """The coordinates in the file, a row for every point."""
+    description = found.model.description
+    if not isinstance(description, Draft) or not description.points:
+        return
+    unit = description.length
+    ground = found.model.equations.fixed
+    columns = [Column(header="point", cells=list(map(pretty, description.points)))]
+    for axis, letter in enumerate("xy"):
+        given = [description.numbers(place[axis]) for place in description.points.values()]
+        header = f"{letter} [{unit}]"
+        columns.append(Column(header=header, cells=list(map(short, given)), align="point"))
+    of = ["fixed" if name in ground else "sketch" for name in description.points]
+    columns.append(Column(header="", cells=of))
+    yield from tables("Coordinates of points in the file", columns)
+
+
+def equations(found: Findings, template: Template) -> Iterator[Block]:
+    """The closure equations in complex form and as scalar equations."""
+    sheet = EquationSheet(found.model.equations)
+    own = sheet.equations
+    kinds = [("unknowns", own.unknowns), ("inputs", own.inputs)]
+    listed = [
+        (name, ", ".join(f"{pretty(v.shown)} ({v.kind})" for v in variables))
+        for name, variables in kinds
+        if variables
+    ]
+    yield Facts(pairs=tuple(listed))
+    if not own.labels:
+        yield Paragraph(text="There is no loop: all positions follow from the inputs directly.")
+    mathml, latex = MathML(), Latex()
+    if own.loops:
+        yield Note(text="Loop closure equations in complex form")
+        for loop in own.loops:
+            yield Equation(mathml=sheet.loop(loop, mathml).element(), latex=sheet.loop(loop, latex))
+        yield Note(text="Scalar equations: real parts, imaginary parts, others")
+    rows = zip(sheet.real_rows(mathml), sheet.real_rows(latex), strict=True)
+    for row, tex in rows:
+        zero = mathml.equation(row, mathml.number("0"))
+        yield Equation(mathml=zero.element(), latex=f"{tex} = 0")
+    for law in own.laws:
+        if law.meaning:
+            yield Paragraph(text=f"{pretty(law.label)}: {law.meaning}")
+
+
+def newton(found: Findings, template: Template) -> Iterator[Block]:
+    """The iterations of every block: the iterates, then F, J and Δ of each."""
+    position, units = found.position, found.model.units
+    kinds = {v.name: Kind(v.kind) for v in found.model.equations.unknowns}
+    where = inputs_text(position.input, position.input_units)
+    yield Paragraph(
+        text=f"Newton-Raphson solves F(x) = 0 from the guess of the file {where}".rstrip()
+        + ": in each iteration J Δ = −F gives the change Δ of the unknowns, with J = ∂F/∂x "
+        "(angles in radians)."
+    )
+    for trail in position.steps:
+        block = ", ".join(map(pretty, trail.equations))
+        yield from tables(f"Iterates of {block}", trail_columns(trail, kinds, units))
+        if not trail.status.ok:
+            yield Paragraph(text=f"{trail.status.value}.")
+        for step in trail.steps[:-1]:
+            yield from tables(f"F and J of {block} at k = {step.k}", system_columns(trail, step))
+            yield Paragraph(text=f"Δ: {changes_text(step, kinds, units)}")
+
+
+# ----------------------------------------------------------------------
+# Sections about evidence: what is proved, versions, the file.
+
+
+def proof(found: Findings, template: Template) -> Iterator[Block]:
+    """One paragraph on what is proved and what is not, and the evidence in numbers."""
+    sentences = [*_positions(found), *_lists(found), *_unproved(found)]
+    yield Paragraph(text=" ".join(sentences))
+    if found.motion is not None and found.motion.found.any():
+        yield Facts(pairs=tuple(evidence_fields(found.motion, _measure(found))))
+
+
+def _measure(found: Findings) -> str:
+    return " of the longest link" if found.model.equations.loops else ""
+
+
+def _radius(found: Findings) -> str:
+    return radius_measure(found.model.equations.loops, found.model.equations.real)
+
+
+def _positions(found: Findings) -> Iterator[str]:
+    motion = found.motion
+    if motion is None:
+        if not found.position.status.ok:
+            yield f"No position was found: {found.position.message}."
+            return
+        certificate = certificate_text(found.position.certificate, _radius(found))
+        yield f"Certificate of the position: {certificate}."
+        return
+    there = int(motion.found.sum())
+    yield f"Rows with a position: {there} of {len(motion)}."
+    if not there:
+        return
+    proved = np.flatnonzero(motion.certified)
+    yield f"Rows with a complete proof: {len(proved)}."
+    if len(proved):
+        yield (
+            f"In each of these, a true position lies within {_largest(motion, proved)}"
+            f"{_radius(found)} of the computed one, no other lies near it, and the motion from "
+            "the start to it stays on one branch."
+        )
+    for reason in Certification:
+        count = sum(
+            c is reason for c, here in zip(motion.certification, motion.found, strict=True) if here
+        )
+        if count and reason is not Certification.CERTIFIED:
+            yield f"Rows without it: {count}; {reason.value}."
+
+
+def _largest(motion: Motion, rows: np.ndarray) -> str:
+    return f"{significant(float(motion.radius[rows].max()), 2)}"
+
+
+def _lists(found: Findings) -> Iterator[str]:
+    """How many circuits and configurations are proved, and whether their lists are complete."""
+    if found.circuits is not None:
+        certified = sum(circuit.certified for circuit in found.circuits)
+        if len(found.circuits):
+            yield f"Circuits proved to be one curve: {certified} of {len(found.circuits)}."
+        yield _sentence(found.circuits.message)
+    if found.configurations is not None:
+        certified = sum(p.certificate.certified for p in found.configurations)
+        if len(found.configurations):
+            yield f"Proved configurations: {certified} of {len(found.configurations)}."
+        yield _sentence(f"configurations: {found.configurations.message}")
+
+
+def _sentence(text: str) -> str:
+    return f"{text[:1].upper()}{text[1:]}."
+
+
+def _unproved(found: Findings) -> Iterator[str]:
+    """What carries no proof."""
+    others = ["rates", "plots"]
+    others += ["forces"] if found.forces is not None else []
+    others += ["tolerances"] if found.tolerances else []
+    listed = f"{', '.join(others[:-1])} and {others[-1]}"
+    yield f"Not proved are {listed}: they are computed in double precision from the positions."
+
+
+def versions(found: Findings, template: Template) -> Iterator[Block]:
+    """The programs that computed the results."""
+    yield Facts(
+        pairs=(
+            ("Linkwork", metadata.version("linkwork")),
+            ("NumPy", np.__version__),
+            ("Python", platform.python_version()),
+        )
+    )
+
+
+def file(found: Findings, template: Template) -> Iterator[Block]:
+    """The mechanism file, complete."""
+    yield Paragraph(text="All results of this report are computed from the file below.")
+    yield Listing(text=found.source)
