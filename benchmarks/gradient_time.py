@@ -31,9 +31,9 @@ def measure(repeats: int = 7) -> bool:
     for name, of in GRADIENTS:
         mechanism = lw.example(name)
         motion = mechanism.sweep()
-        count = len(mechanism.gradient(of, motion=motion))
+        count = len(lw.design.gradient(mechanism, of, motion=motion))
         sweep, gradient = interleaved(
-            [mechanism.sweep, partial(mechanism.gradient, of, motion=motion)],
+            [mechanism.sweep, partial(lw.design.gradient, mechanism, of, motion=motion)],
             repeats,
             process_time,
         )

@@ -25,6 +25,7 @@ from benchmarks.processes import processor_time
 from linkwork.app.live.cycle import MotionPicture
 from linkwork.app.live.messages import encoded
 from linkwork.app.live.result_events import motion_found
+from linkwork.core.motion.sweeping import approximate_sweep
 
 __all__ = ["measure"]
 
@@ -108,7 +109,7 @@ def _stages(repeats: int = 60) -> None:
         times = [time.process_time()]
         mechanism = lw.loads(changed)
         times.append(time.process_time())
-        motion = mechanism.approximate_sweep(motion)
+        motion = approximate_sweep(mechanism.model, motion)
         times.append(time.process_time())
         page = picture.page(motion, brief=True)
         times.append(time.process_time())

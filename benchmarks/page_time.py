@@ -14,7 +14,7 @@ from typing import Any
 
 import linkwork as lw
 from linkwork.app import motion_page, offline_page
-from linkwork.core.drawing.moving_scene import moving_scene
+from linkwork.app.pages.moving_scene import moving_scene
 from linkwork.core.mechanism.linkage import Linkage
 
 __all__ = ["measure"]

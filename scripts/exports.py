@@ -42,7 +42,7 @@ def _compared(name: str, suffix: str, folder: Path) -> str:
     few = suffix == ".st" and len(mechanism.description.inputs) == 1
     motion = mechanism.sweep(start=60, stop=62, step=1) if few else mechanism.sweep()
     try:
-        mechanism.to_code(file, motion)
+        mechanism.write(file, motion=motion)
     except InputError as error:
         return f"refused: {str(error).partition(': ')[2]}"
     if suffix == ".st":

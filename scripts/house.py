@@ -18,21 +18,21 @@ from pathlib import Path
 SOURCE = Path(__file__).resolve().parents[1] / "src" / "linkwork"
 #: Each measure with its goal and its ceiling.
 BOUNDS = {
-    "code lines": (84_000, 96_900),
-    "code lines of the core": (27_000, 34_050),
-    "files": (380, 508),
-    "files of the core": (130, 175),
-    "lines that import or list names": (7_000, 9_400),
-    "arrows between rooms": (70, 60),
-    "imports of wings in the core": (0, 54),
-    "names at the root": (60, 112),
-    "methods of Mechanism": (24, 48),
+    "code lines": (84_000, 97_060),
+    "code lines of the core": (27_000, 31_400),
+    "files": (380, 511),
+    "files of the core": (130, 164),
+    "lines that import or list names": (7_000, 9_440),
+    "arrows between rooms": (70, 42),
+    "imports of wings in the core": (0, 9),
+    "names at the root": (60, 60),
+    "methods of Mechanism": (24, 24),
     "modules entered by a warm solve": (40, 38),
-    "modules entered by a warm sweep to CSV": (45, 68),
+    "modules entered by a warm sweep to CSV": (45, 67),
     "modules entered by warm forces": (60, 59),
-    "modules entered by a frame of a drag": (60, 77),
-    "modules loaded by linkwork solve": (110, 160),
-    "modules loaded by linkwork sweep --csv": (130, 257),
+    "modules entered by a frame of a drag": (60, 78),
+    "modules loaded by linkwork solve": (110, 132),
+    "modules loaded by linkwork sweep --csv": (130, 191),
 }
 #: Tokens that are not code.
 _LAYOUT = {
@@ -80,12 +80,24 @@ def arrows(texts: dict[Path, str]) -> Counter[tuple[str, str]]:
         for path, text in texts.items()
         if len(path.parts) > 1
         for name in _imported(text)
+        if name != "linkwork.wings"
     )
     return Counter({pair: count for pair, count in found.items() if pair[0] != pair[1]})
 
 
 def _imported(text: str) -> Iterator[str]:
-    for node in ast.walk(ast.parse(text)):
+    """Modules that are imported when a file runs, or by a package when a name is first used."""
+    tree = ast.parse(text)
+    lazy = "__getattr__" in text
+    only_types = {
+        id(statement)
+        for node in ast.walk(tree)
+        if isinstance(node, ast.If) and ast.unparse(node.test) == "TYPE_CHECKING" and not lazy
+        for statement in node.body
+    }
+    for node in ast.walk(tree):
+        if id(node) in only_types:
+            continue
         if isinstance(node, ast.Import):
             names = [alias.name for alias in node.names]
         elif isinstance(node, ast.ImportFrom) and node.module:

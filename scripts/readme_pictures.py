@@ -27,7 +27,7 @@ _INK, _PAPER, _PALE = "#14212b", "#ffffff", "#4a5a66"
 def moving_picture() -> None:
     """The rapier drive over one turn of its crank."""
     drive = lw.example("rapier-drive")
-    options = lw.FilmOptions(fps=24, rows=72, dpi=120)
+    options = lw.app.FilmOptions(fps=24, rows=72, dpi=120)
     drive.animate(IMAGES / "rapier-drive.webp", options=options)
 
 

@@ -9,6 +9,7 @@ from pathlib import Path
 import linkwork as lw
 from linkwork.writers import Findings, template_of
 from linkwork.writers.report.document import Figure, Table
+from linkwork.writers.report.gathering import findings
 from linkwork.writers.report.report import document_of, report_of
 
 __all__ = ["READERS", "read_report"]
@@ -20,8 +21,7 @@ _TEMPLATE = template_of("engineer")
 
 @cache
 def _found(name: str) -> Findings:
-    found: Findings = lw.example(name).findings(_TEMPLATE, None, None, lambda part: None)
-    return found
+    return findings(lw.example(name), _TEMPLATE, None, None, lambda part: None)
 
 
 def read_report(name: str, suffix: str, folder: Path) -> str:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TypeVar
 
-from linkwork.api.solvable import SolvableMechanism
+from linkwork import Mechanism
 from linkwork.core.mechanism.description import Description
 
 __all__ = ["described_as"]
@@ -12,7 +12,7 @@ __all__ = ["described_as"]
 _Form = TypeVar("_Form", bound=Description)
 
 
-def described_as(form: type[_Form], mechanism: SolvableMechanism) -> _Form:
+def described_as(form: type[_Form], mechanism: Mechanism) -> _Form:
     """A mechanism's description, which has that form."""
     description = mechanism.description
     assert isinstance(description, form)

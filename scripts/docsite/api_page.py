@@ -36,7 +36,11 @@ _PARTS = (
     ("Families", ("linkwork.families",)),
     (
         "Synthesis and improvement",
-        ("linkwork.design", "linkwork.api.synthesis", "linkwork.api.path_atlas"),
+        (
+            "linkwork.design",
+            "linkwork.synthesis.task_objects",
+            "linkwork.synthesis.atlas.near_paths",
+        ),
     ),
     ("Pictures and films", ("linkwork.core.drawing", "linkwork.app")),
     ("Plates", ("linkwork.writers.plates",)),

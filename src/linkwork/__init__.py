@@ -1,18 +1,30 @@
-"""Linkwork: planar mechanisms solved from their loop-closure equations."""
+"""Linkwork: planar mechanisms solved from their loop-closure equations.
+
+The wings are public packages: ``lw.circuits``, ``lw.forces``, ``lw.families``, ``lw.design``,
+``lw.synthesis``, ``lw.writers``, ``lw.readers``, ``lw.app``.
+"""
 
 from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from linkwork import api
-from linkwork.core.foundation.containers import register_when_needed
 from linkwork.core.foundation.loading import loader
 
-register_when_needed(lambda: api.register_presenters())
-
 if TYPE_CHECKING:
-    from linkwork.api.foreign import Imported as Imported, imported as imported
-    from linkwork.api.making import (
+    from linkwork import (
+        app as app,
+        circuits as circuits,
+        contacts as contacts,
+        design as design,
+        families as families,
+        forces as forces,
+        readers as readers,
+        synthesis as synthesis,
+        writers as writers,
+    )
+    from linkwork.contacts.cams import Cam as Cam, Segment as Segment
+    from linkwork.contacts.curves import Curve as Curve, NoncircularGear as NoncircularGear
+    from linkwork.core.api.making import (
         example as example,
         linkage as linkage,
         load as load,
@@ -20,22 +32,8 @@ if TYPE_CHECKING:
         loops as loops,
         plain_equations as plain_equations,
     )
-    from linkwork.api.mechanism import Mechanism as Mechanism
-    from linkwork.api.path_atlas import NearPath as NearPath, PathAtlas as PathAtlas
-    from linkwork.api.synthesis import Synthesis as Synthesis, Task as Task
-    from linkwork.app.pages.animation import FilmOptions as FilmOptions
-    from linkwork.circuits.results import (
-        Branch as Branch,
-        Circuit as Circuit,
-        Circuits as Circuits,
-        Configurations as Configurations,
-        PathCount as PathCount,
-    )
-    from linkwork.contacts.cams import Cam as Cam, Segment as Segment
-    from linkwork.contacts.curves import Curve as Curve, NoncircularGear as NoncircularGear
+    from linkwork.core.api.mechanism import Mechanism as Mechanism
     from linkwork.core.drawing.annotations import SceneOptions as SceneOptions
-    from linkwork.core.drawing.scene import Scene as Scene
-    from linkwork.core.equations.writing import EquationSheet as EquationSheet
     from linkwork.core.foundation.errors import (
         ExpressionError as ExpressionError,
         InputError as InputError,
@@ -77,69 +75,9 @@ if TYPE_CHECKING:
     from linkwork.core.mechanism.part.springs import Load as Load, Spring as Spring
     from linkwork.core.mechanism.part.weld import Weld as Weld
     from linkwork.core.numerics.newton import NewtonOptions as NewtonOptions
-    from linkwork.core.results.check import (
-        AssurGroup as AssurGroup,
-        BlockSummary as BlockSummary,
-        CheckReport as CheckReport,
-        Classification as Classification,
-        Inversion as Inversion,
-        LoopType as LoopType,
-    )
-    from linkwork.core.results.failure import Failure as Failure, Remedy as Remedy
-    from linkwork.core.results.limit import (
-        Limit as Limit,
-        LimitKind as LimitKind,
-        OutputLimit as OutputLimit,
-    )
     from linkwork.core.results.motion import Motion as Motion
-    from linkwork.core.results.nearest_assembly import NearestAssembly as NearestAssembly
-    from linkwork.core.results.position import (
-        Certificate as Certificate,
-        Iterate as Iterate,
-        Iterates as Iterates,
-        NewtonStep as NewtonStep,
-        NewtonTrail as NewtonTrail,
-        Position as Position,
-    )
-    from linkwork.core.results.series import Series as Series
-    from linkwork.core.results.tables import Table as Table
+    from linkwork.core.results.position import Position as Position
     from linkwork.core.textfile.reader import example_text as example_text, examples as examples
-    from linkwork.design.results import (
-        Counterweight as Counterweight,
-        Counterweights as Counterweights,
-        Flywheel as Flywheel,
-        Harmonics as Harmonics,
-        InflectionCircle as InflectionCircle,
-        MotorCheck as MotorCheck,
-    )
-    from linkwork.design.tolerance_results import (
-        Contribution as Contribution,
-        Sampled as Sampled,
-        Sensitivity as Sensitivity,
-        SensitivityStatus as SensitivityStatus,
-        Tolerance as Tolerance,
-    )
-    from linkwork.families.design_sweep import FamilyLimits as FamilyLimits
-    from linkwork.families.family import Family as Family
-    from linkwork.families.family_motion import FamilyMotion as FamilyMotion
-    from linkwork.forces.results import (
-        Equilibrium as Equilibrium,
-        Force as Force,
-        ForceStatus as ForceStatus,
-        Reactions as Reactions,
-    )
-    from linkwork.forces.stall import Stall as Stall
-    from linkwork.readers.assembly import Exported as Exported, LeftOut as LeftOut
-    from linkwork.synthesis.defects.verdicts import (
-        Defect as Defect,
-        DefectKind as DefectKind,
-        JudgedDesign as JudgedDesign,
-    )
-    from linkwork.synthesis.improvement.proved_design import ImprovedDesign as ImprovedDesign
-    from linkwork.synthesis.solvers.result import (
-        Dyad as Dyad,
-        SynthesizedDesign as SynthesizedDesign,
-    )
-    from linkwork.writers.plates.plate import PlateOptions as PlateOptions, PlateStack as PlateStack
+    from linkwork.synthesis.task_objects import Task as Task
 else:
     __getattr__ = loader(__name__)

@@ -62,7 +62,10 @@ def test_limited_reading_says_which_rows_are_out_of_reach() -> None:
     # printed to 12 decimals: 1e-12 rad are 6e-11 deg
     assert low == pytest.approx(149.617278637485, abs=1e-12)
     assert high == pytest.approx(360 - 158.679899604109, abs=1e-12)
-    assert all(limit.located and limit.kind is lw.LimitKind.DEAD_POINT for limit in motion.limits)
+    assert all(
+        limit.located and limit.kind is lw.core.results.LimitKind.DEAD_POINT
+        for limit in motion.limits
+    )
 
 
 @pytest.mark.parametrize(

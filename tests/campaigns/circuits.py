@@ -38,7 +38,7 @@ def _gap(a: float, b: float, turns: bool) -> float:
     return abs(math.remainder(a - b, _TURN)) if turns else abs(a - b)
 
 
-def _on_circuits(circuits: lw.Circuits, at: float, turns: bool) -> int:
+def _on_circuits(circuits: lw.circuits.Circuits, at: float, turns: bool) -> int:
     """How many positions all circuits have at an input value."""
     count = 0
     for circuit in circuits:

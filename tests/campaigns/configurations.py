@@ -21,7 +21,7 @@ def judge_truss(mechanism: lw.Mechanism, count: int) -> list[str]:
     return judge_list(mechanism, mechanism.configurations(), count)
 
 
-def judge_list(mechanism: lw.Mechanism, found: lw.Configurations, count: int) -> list[str]:
+def judge_list(mechanism: lw.Mechanism, found: lw.circuits.Configurations, count: int) -> list[str]:
     """What is wrong with this list."""
     (paths,) = found.paths
     wrong = []

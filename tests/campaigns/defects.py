@@ -6,7 +6,7 @@ from collections import Counter
 
 import numpy as np
 
-from linkwork.api import Mechanism
+from linkwork import Mechanism
 from linkwork.core.foundation.arrays import Array
 from linkwork.synthesis.defects.verdicts import DefectKind, judge
 from linkwork.synthesis.loops.candidates import Candidates, Drive, LoopKind

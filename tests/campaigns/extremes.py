@@ -64,7 +64,7 @@ def highest(form: Form, low: float, high: float) -> float:
 class _Case:
     """A mechanism with closed forms of quantities, and a length with its value."""
 
-    mechanism: lw.api.Mechanism
+    mechanism: lw.Mechanism
     forms: Mapping[str, Form]
     table: tuple[float, float, float]
     varied: str

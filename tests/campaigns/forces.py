@@ -69,7 +69,7 @@ def force_campaign(part: int, count: int) -> tuple[Counter[str], list[str]]:
     return counts, false
 
 
-def _judge(found: lw.Reactions, fine: BoolArray) -> list[str]:
+def _judge(found: lw.forces.Reactions, fine: BoolArray) -> list[str]:
     false = []
     if "disagreement" in found.values:
         apart = np.asarray(found["disagreement"])[fine]

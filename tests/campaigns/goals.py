@@ -40,8 +40,8 @@ def goal_campaign(part: int) -> tuple[Counter[str], list[str]]:
     target = motion.value(of) * float(rng.uniform(0.6, 1.5))
     counts: Counter[str] = Counter(goals=1)
     try:
-        designs = bar.improve(
-            {"of": of, "target": target}, starts=_STARTS, spread=_SPREAD, seed=part
+        designs = lw.synthesis.improve(
+            bar, {"of": of, "target": target}, starts=_STARTS, spread=_SPREAD, seed=part
         )
     except LinkworkError:
         return Counter({"without a number that varies": 1}), []
@@ -52,10 +52,10 @@ def goal_campaign(part: int) -> tuple[Counter[str], list[str]]:
             counts["not sound"] += 1
             continue
         counts["sound"] += 1
-        told, motion = design.goals[of], lw.api.Mechanism(design.description).sweep()
+        told, motion = design.goals[of], lw.Mechanism(design.description).sweep()
         if not abs(told - abs(motion.value(of) - target)) <= _SAME * max(1.0, abs(target), told):
             false.append(f"part {part}: {name}, {of} = {target!r}, not missed by {told!r}")
-        if not _passes(lw.api.Mechanism(design.description)):
+        if not _passes(lw.Mechanism(design.description)):
             numbers = dict(design.numbers)
             false.append(f"part {part}: {name}, {of} = {target!r} ends in between: {numbers}")
     return counts, false

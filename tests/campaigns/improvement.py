@@ -73,7 +73,7 @@ CURVES = (
 )  # fmt: skip
 
 
-def solve_curve_task(curve: Curve, starts: int | None = None) -> lw.Synthesis:
+def solve_curve_task(curve: Curve, starts: int | None = None) -> lw.synthesis.Synthesis:
     """The task of a curve, for four-bars."""
     inputs = None
     if curve.step:
@@ -94,7 +94,9 @@ def solve_curve_task(curve: Curve, starts: int | None = None) -> lw.Synthesis:
     return task.solve()
 
 
-def squares(design: lw.SynthesizedDesign, points: tuple[tuple[float, float], ...]) -> float:
+def squares(
+    design: lw.synthesis.SynthesizedDesign, points: tuple[tuple[float, float], ...]
+) -> float:
     """The sum of squares of a design, by circles about its moving pivots."""
     there = {name: complex(*place) for name, place in design.linkage.points.items()}
     a0, b0, a, b = (there[name] for name in ("A0", "B0", "A", "B"))
@@ -146,11 +148,11 @@ def _jansen() -> tuple[Counter[str], list[str]]:
         rng = np.random.default_rng([5, seed])
         start = {name: own * (1.0 + rng.uniform(-0.05, 0.05)) for name, own in lengths.items()}
         changed = leg.with_dimensions(start)
-        best = changed.improve(goal, vary=list(lengths), starts=1)
+        best = lw.synthesis.improve(changed, goal, vary=list(lengths), starts=1)
         if not best:
             continue
         # the referee solves the improved file by itself
-        solved = lw.api.Mechanism(best[0].description).sweep(certify=False).trace("F")[rows]
+        solved = lw.Mechanism(best[0].description).sweep(certify=False).trace("F")[rows]
         reached += bool(np.sqrt(np.mean(np.abs(solved - path) ** 2)) < _LEG_RMS)
     seconds = (process_time() - begin) / _LEG_STARTS
     told = f"leg: {seconds:.2f} s for a start"

@@ -37,7 +37,7 @@ def stroke_campaign(part: int) -> tuple[Counter[str], list[str]]:
         of = max(strokes, key=lambda of: round(strokes[of], 6))
         before = strokes[of]
         goal = {"of": of, "target": _MORE * before}
-        found = mechanism.improve(goal, starts=_STARTS)
+        found = lw.synthesis.improve(mechanism, goal, starts=_STARTS)
     except lw.LinkworkError as error:
         return Counter({"refused": 1, f"{name}: refused, {error}"[:110]: 1}), []
     sound = [design for design in found if design.sound]

@@ -15,10 +15,11 @@ from pathlib import Path
 from typing import Any
 
 import linkwork as lw
-from linkwork.app.live.mechanism_file import MechanismFile, blank_sheet
+from linkwork.app.live.mechanism_file import MechanismFile
 from linkwork.app.live.server import LiveServer
 from linkwork.app.live.workbench import Workbench
 from linkwork.core.mechanism.linkage import Draft
+from linkwork.core.textfile.reader import blank_sheet
 
 __all__ = ["monkey_at", "monkey_campaign"]
 

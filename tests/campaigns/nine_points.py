@@ -8,8 +8,8 @@ from functools import cache
 
 import numpy as np
 
-from linkwork.api.synthesis import Task
 from linkwork.circuits.homotopy.bilinear_homotopy import normal_numbers
+from linkwork.synthesis.task_objects import Task
 
 __all__ = ["nine_point_campaign"]
 

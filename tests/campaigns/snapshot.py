@@ -178,7 +178,7 @@ def _measures(result: Any, columns: Sequence[str], outputs: Iterable[str]) -> li
     return [angle if units.get(name) == angle else others[name] for name in columns]
 
 
-def _add_limits(record: Record, section: str, limits: Iterable[lw.Limit]) -> None:
+def _add_limits(record: Record, section: str, limits: Iterable[lw.core.results.Limit]) -> None:
     limits = tuple(limits)
     record.say(f"{section}.limits.kind", [limit.kind.name for limit in limits])
     record.say(f"{section}.limits.located", [limit.located for limit in limits])
@@ -188,12 +188,12 @@ def _add_limits(record: Record, section: str, limits: Iterable[lw.Limit]) -> Non
     record.note(f"{section}.limits.input slack", [_width(limit) for limit in limits])
 
 
-def _width(limit: lw.Limit) -> float:
+def _width(limit: lw.core.results.Limit) -> float:
     low, high = limit.bracket
     return abs(high - low)
 
 
-def _add_configurations(record: Record, found: lw.Configurations) -> None:
+def _add_configurations(record: Record, found: lw.circuits.Configurations) -> None:
     record.say("configurations.names.all", found.names)
     record.say("configurations.complete.grade", [found.completeness.name])
     record.say("configurations.status.name", [position.status.name for position in found])
@@ -210,7 +210,7 @@ def _add_configurations(record: Record, found: lw.Configurations) -> None:
         record.note("configurations.coordinates.condition", [p.condition for p in found])
 
 
-def _add_circuits(record: Record, found: lw.Circuits) -> None:
+def _add_circuits(record: Record, found: lw.circuits.Circuits) -> None:
     limits = [[*circuit.dead_points, *circuit.change_points] for circuit in found]
     record.say("circuits.complete.grade", [found.completeness.name])
     record.say("circuits.circuits.name", [circuit.name for circuit in found])

@@ -20,10 +20,10 @@ import numpy as np
 
 import linkwork as lw
 from linkwork.app.pages.page_building import motion_page
-from linkwork.app.task.templates import template_names, template_text
 from linkwork.core.mechanism.linkage import Linkage
 from linkwork.families.study import run_study
 from linkwork.families.study.plan import read_plan_text
+from linkwork.synthesis.tasks.templates import template_names, template_text
 from tests.campaigns.snapshot import Record, attempt, record_of
 
 __all__ = ["record_of_any", "wing_names"]
@@ -179,7 +179,7 @@ def _synthesis(record: Record, which: str) -> None:
 
 def _design_numbers(design: Any) -> Iterator[float]:
     yield from map(float, design.numbers.values())
-    if isinstance(design, lw.SynthesizedDesign):
+    if isinstance(design, lw.synthesis.SynthesizedDesign):
         yield from (float(x) for place in design.linkage.points.values() for x in place)
 
 
@@ -221,10 +221,12 @@ def _files(record: Record, name: str) -> None:
             return _numbers_of(_text_of(path))
 
         writers: dict[str, Callable[[Path], object]] = {
-            **{s: lambda path: mechanism.to_code(path, motion) for s in _PROGRAMS},
-            **{s: lambda path: mechanism.to_robot(path, motion=motion) for s in _ROBOTS},
-            **{s: lambda path: mechanism.to_plates(path, motion) for s in _PLATES},
-            ".xlsx": lambda path: mechanism.to_excel(path, motion),
+            **{s: lambda path: mechanism.write(path, motion=motion) for s in _PROGRAMS},
+            **{s: lambda path: mechanism.write(path, motion=motion) for s in _ROBOTS},
+            **{
+                s: lambda path: mechanism.write(path, motion=motion, kind="plates") for s in _PLATES
+            },
+            ".xlsx": lambda path: mechanism.write(path, motion=motion),
         }
         for suffix, write in writers.items():
             key = suffix.removeprefix(".")
@@ -232,7 +234,7 @@ def _files(record: Record, name: str) -> None:
             if found is not None:
                 record.note(f"{key}.numbers.value", found)
         for form in _FOREIGN:
-            written = attempt(record, form, partial(mechanism.exported, form))
+            written = attempt(record, form, partial(lw.readers.exported, mechanism, form))
             if written is not None:
                 record.note(f"{form}.numbers.value", _numbers_of(written.text))
 

@@ -13,7 +13,7 @@ from itertools import combinations
 
 import numpy as np
 
-from linkwork.api import Mechanism
+from linkwork import Mechanism
 from linkwork.core.foundation.arrays import Array, ComplexArray
 from linkwork.core.foundation.names import GROUND
 from linkwork.core.mechanism.linkage import Draft

@@ -42,7 +42,7 @@ def workbook_campaign(count: int) -> tuple[Counter[str], list[str]]:
         folder = Path(given)
         for name in names:
             mechanism = coarse(_with_loads(read_example(name)), _STEPS)
-            mechanism.to_excel(folder / f"{name}.xlsx", mechanism.sweep())
+            mechanism.write(folder / f"{name}.xlsx", motion=mechanism.sweep())
             _write_changed(folder / f"{name}.xlsx", folder / f"{name}{_CHANGED}.xlsx")
         out = _recalculated(folder)
         for name in names:

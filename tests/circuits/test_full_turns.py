@@ -35,7 +35,7 @@ def turned(monkeypatch: pytest.MonkeyPatch) -> list[TracedCurve | None]:
     return found
 
 
-def described(found: lw.Circuits) -> list[object]:
+def described(found: lw.circuits.Circuits) -> list[object]:
     """All words, flags and counts of a list."""
     circuits = [
         (
@@ -53,7 +53,7 @@ def described(found: lw.Circuits) -> list[object]:
     return [found.completeness, found.message, found.seeded, circuits]
 
 
-def assert_same(one: lw.Circuits, other: lw.Circuits) -> None:
+def assert_same(one: lw.circuits.Circuits, other: lw.circuits.Circuits) -> None:
     assert described(one) == described(other)
     for a, b in zip(one, other, strict=True):
         slack = max(

@@ -7,7 +7,7 @@ import math
 from pathlib import Path
 
 import linkwork as lw
-from linkwork.api import example_text
+from linkwork import example_text
 from tests.cli.conftest import Run
 
 

@@ -14,10 +14,10 @@ import numpy as np
 import pytest
 
 import linkwork as lw
-from linkwork.api import example_text, load
+from linkwork import example_text, load
 from linkwork.core.commands import options as output_file
 from linkwork.core.foundation.errors import InputError
-from linkwork.core.results.motion_table import table_of
+from linkwork.core.results.motion import table_of
 from tests.cli.conftest import Run
 
 

@@ -10,7 +10,7 @@ from pathlib import Path
 import click
 import pytest
 
-from linkwork.api import example_text, examples, load
+from linkwork import example_text, examples, load
 from linkwork.core.commands.check import check_lines
 from linkwork.core.commands.main import linkwork
 from tests.cli.conftest import FILES, Run

@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 
 import linkwork as lw
-from linkwork.api import example_text
+from linkwork import example_text
 from tests.cli.conftest import Run
 
 
@@ -320,7 +320,7 @@ def _refuse(monkeypatch: pytest.MonkeyPatch, *computations: str) -> None:
         raise AssertionError("computed")
 
     for name in computations:
-        monkeypatch.setattr(f"linkwork.api.Mechanism.{name}", fail)
+        monkeypatch.setattr(f"linkwork.core.api.mechanism.Mechanism.{name}", fail)
 
 
 def _middle(svg: str, group: str) -> tuple[float, float]:

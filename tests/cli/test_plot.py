@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from linkwork.api import example_text
+from linkwork import example_text
 from tests.cli.conftest import Run
 from tests.drawing.pages import svg_texts
 

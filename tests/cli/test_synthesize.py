@@ -14,10 +14,10 @@ import pytest
 from click.testing import CliRunner
 
 import linkwork as lw
-from linkwork.api.designs_folder import FolderOptions, write_designs
-from linkwork.api.task_copy import task_copy
 from linkwork.core.commands import terminal as interrupts
 from linkwork.core.commands.main import linkwork
+from linkwork.synthesis.designs_folder import FolderOptions, write_designs
+from linkwork.synthesis.task_copy import task_copy
 
 _TASK = Path(__file__).parents[2] / "examples" / "tasks" / "tilt-a-box.toml"
 
@@ -249,7 +249,7 @@ def test_an_interruption_of_the_tables_leaves_the_designs(
     def interrupted(*_: Any, **__: Any) -> str:
         raise KeyboardInterrupt
 
-    monkeypatch.setattr(f"linkwork.api.designs_folder.{table}", interrupted)
+    monkeypatch.setattr(f"linkwork.synthesis.designs_folder.{table}", interrupted)
     found = lw.Task.load(_TASK).solve()
     options = FolderOptions(csv=True, html=True)
     with pytest.raises(KeyboardInterrupt, match=r"after 5 of 5 designs were written in"):
@@ -292,7 +292,7 @@ def test_an_interruption_of_the_advice_keeps_the_refused_designs(
 
 
 def test_an_interruption_before_there_is_a_design_says_so(monkeypatch: pytest.MonkeyPatch) -> None:
-    def interrupted(*_: Any, **__: Any) -> lw.Synthesis:
+    def interrupted(*_: Any, **__: Any) -> lw.synthesis.Synthesis:
         raise KeyboardInterrupt
 
     monkeypatch.setattr(lw.Task, "solve", interrupted)
@@ -306,7 +306,7 @@ def test_designs_of_an_interrupted_search_are_written(
 ) -> None:
     found = replace(lw.Task.load(_TASK).solve(), interrupted=True)
 
-    def interrupted(*_: Any, **__: Any) -> lw.Synthesis:
+    def interrupted(*_: Any, **__: Any) -> lw.synthesis.Synthesis:
         interrupts._came.set()  # as Ctrl-C does
         return found
 

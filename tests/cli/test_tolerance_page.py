@@ -8,7 +8,7 @@ from pathlib import Path
 
 import pytest
 
-from linkwork.api import example_text
+from linkwork import example_text
 from tests.cli.conftest import Run
 
 TABLES = """

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 
 import linkwork as lw
-from linkwork.api import Mechanism
+from linkwork import Mechanism
 from linkwork.core.foundation.arrays import Array
 from linkwork.core.mechanism.varied_numbers import number_named, with_numbers
 from linkwork.core.motion.model import Model

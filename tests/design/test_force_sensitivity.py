@@ -112,7 +112,7 @@ HELD = ["crank.effort", "crank.effort.backward", "efficiency", "A.friction", "d.
 def test_forces_have_the_derivatives_of_differences(text: str, names_of: list[str]) -> None:
     machine = lw.loads(text)
     names = ["O A", "A B", "m2", "T.y", *(["mu"] if text != MACHINE else [])]
-    found = {of: machine.sensitivity(of, at=50, by=names) for of in names_of}
+    found = {of: lw.design.sensitivity(machine, of, at=50, by=names) for of in names_of}
     assert {s.status.name for s in found.values()} == {"FOUND"}
     for name in names:
         at = next(iter(found.values())).numbers[name]
@@ -137,7 +137,7 @@ def test_efforts_of_several_inputs_have_the_derivatives_of_differences() -> None
     start, length = loaded.solve().input, next(iter(given.lengths))
     for name in start:
         of = f"{name}.effort"
-        found = loaded.sensitivity(of, at=start, by=[length])
+        found = lw.design.sensitivity(loaded, of, at=start, by=[length])
         at = found.numbers[length]
 
         def effort(x: float, of: str = of) -> dict[str, float]:
@@ -148,18 +148,20 @@ def test_efforts_of_several_inputs_have_the_derivatives_of_differences() -> None
 
 def test_rows_of_a_table_have_the_sensitivities_of_positions() -> None:
     machine = lw.loads(MACHINE)
-    rows = np.asarray(machine.gradient("crank.effort", by=["A B"])["A B"])
-    assert rows[5] == pytest.approx(machine.sensitivity("crank.effort", at=50)["A B"], rel=1e-10)
+    rows = np.asarray(lw.design.gradient(machine, "crank.effort", by=["A B"])["A B"])
+    assert rows[5] == pytest.approx(
+        lw.design.sensitivity(machine, "crank.effort", at=50)["A B"], rel=1e-10
+    )
 
 
 def test_forces_without_known_derivatives_are_refused_with_their_reason() -> None:
     machine = lw.loads(MACHINE)
     with pytest.raises(InputError, match=r'of "disagreement" are not known: it measures rounding'):
-        machine.sensitivity("disagreement", at=50)
+        lw.design.sensitivity(machine, "disagreement", at=50)
     law = (lw.LawSegment(law="3-4-5", over=1.0, by=90.0),)
     timed = machine.changed(inputs=[lw.Input(link="crank", law=law)])
     with pytest.raises(InputError, match="time drives the rows; give the input a speed"):
-        timed.sensitivity("crank.effort", at=0.5)
+        lw.design.sensitivity(timed, "crank.effort", at=0.5)
     robot = lw.example("five-bar-robot")
     given = cast(Linkage, robot.description)
     masses = {k: lw.Mass(mass=1.0, shape="rod") for k in given.links if k != "ground"}
@@ -168,13 +170,13 @@ def test_forces_without_known_derivatives_are_refused_with_their_reason() -> Non
     )
     start = rubbing.solve().input
     with pytest.raises(InputError, match="friction depends on the rates of several inputs"):
-        rubbing.sensitivity(f"{next(iter(start))}.effort", at=start)
+        lw.design.sensitivity(rubbing, f"{next(iter(start))}.effort", at=start)
     loops = lw.example("rapier-drive").changed(masses={"rod": lw.Mass(mass=1.0, shape="rod")})
-    assert np.isfinite(float(loops.sensitivity("θ12.effort", at=60)["a2"]))
+    assert np.isfinite(float(lw.design.sensitivity(loops, "θ12.effort", at=60)["a2"]))
     hidden = lw.loads(HIDDEN)
     assert np.isfinite(float(hidden.forces(at=60)["B.force.x"]))
     with pytest.raises(InputError, match="a pin P1 that is no point of the file: add it to"):
-        hidden.sensitivity("B.force.x", at=60)
+        lw.design.sensitivity(hidden, "B.force.x", at=60)
 
 
 def test_reactions_of_loops_have_the_derivatives_of_those_of_links() -> None:
@@ -192,7 +194,9 @@ def test_reactions_of_loops_have_the_derivatives_of_those_of_links() -> None:
     numbers = ["a1", "a2", "a3", "a4", "a5", "b4", "d1"]
     pins = (f"{pin}.force.{axis}" for pin in ("A0", "A", "B", "C", "C0", "D") for axis in "xy")
     for name in pins:
-        found, wanted = (each.sensitivity(name, at=50, by=numbers) for each in (loops, links))
+        found, wanted = (
+            lw.design.sensitivity(each, name, at=50, by=numbers) for each in (loops, links)
+        )
         size = max(abs(float(wanted[number])) for number in numbers)
         for number in numbers:
             assert float(found[number]) == pytest.approx(
@@ -202,4 +206,4 @@ def test_reactions_of_loops_have_the_derivatives_of_those_of_links() -> None:
 
 def test_a_machine_without_loads_has_no_forces_to_differentiate() -> None:
     with pytest.raises(InputError, match=r'there is no "crank\.effort"'):
-        lw.example("slider-crank").sensitivity("crank.effort", at=60)
+        lw.design.sensitivity(lw.example("slider-crank"), "crank.effort", at=60)

@@ -54,7 +54,7 @@ def test_a_number_of_the_motion_has_its_sensitivity_in_every_lane(
     # lanes take polynomials between the rows, a motion further rows; B turns back
     rel = {"path_length(B)": 1e-6, "time_ratio(d)": 1e-9, "dwell(d, 2)": 1e-8}.get(of, 1e-11)
     assert value[0] == pytest.approx(mechanism.sweep(certify=False).value(of), rel=rel)
-    known = mechanism.gradient(of, by=by)
+    known = lw.design.gradient(mechanism, of, by=by)
     assert by_x[0] == pytest.approx([known[name] for name in by], rel=max(1000 * rel, 1e-7))
 
 
@@ -63,7 +63,7 @@ def test_a_rate_of_rows_has_its_sensitivity_in_every_lane(of: str) -> None:
     bar, at, by = lw.example("four-bar"), (30.0, 77.0), ("O2 A", "A B")
     value, by_x = _values(bar, of, by, at)
     assert value == pytest.approx([bar.solve(at=a)[of] for a in at], rel=1e-12)
-    known = [bar.gradient(of, by=by, at=a) for a in at]
+    known = [lw.design.gradient(bar, of, by=by, at=a) for a in at]
     assert by_x == pytest.approx(np.array([[rates[n] for n in by] for rates in known]), rel=1e-9)
 
 
@@ -81,14 +81,16 @@ def test_the_sensitivity_of_the_extreme_of_a_rate_is_that_of_the_rate() -> None:
     longer = crank.with_dimensions({"O2 A": 40.0 + 1e-5})
     rise = longer.sweep().value("max(d.d1)") - crank.sweep().value("max(d.d1)")
     # a difference of 1e-5 is known to its square, relative
-    assert crank.gradient("max(d.d1)", by=["O2 A"])["O2 A"] == pytest.approx(rise / 1e-5, rel=1e-3)
+    assert lw.design.gradient(crank, "max(d.d1)", by=["O2 A"])["O2 A"] == pytest.approx(
+        rise / 1e-5, rel=1e-3
+    )
 
 
 def test_a_dwell_and_a_time_ratio_are_met() -> None:
     crank = lw.example("slider-crank")
     goals = [{"of": "time_ratio(d)", "target": 1.2}, {"of": "stroke(d)", "target": 70.0}]
-    best = crank.improve(goals, vary=["O2 A", "d.offset"], starts=1)[0]
-    motion = lw.api.Mechanism(best.description).sweep()
+    best = lw.synthesis.improve(crank, goals, vary=["O2 A", "d.offset"], starts=1)[0]
+    motion = lw.Mechanism(best.description).sweep()
     assert best.sound
     assert motion.value("time_ratio(d)") == pytest.approx(1.2, abs=1e-9)
     assert motion.value("stroke(d)") == pytest.approx(70.0, abs=1e-9)
@@ -98,11 +100,11 @@ def test_a_bound_holds_against_a_goal_that_pulls_across_it() -> None:
     crank = lw.example("slider-crank")
     pull = {"of": "stroke(d)", "target": 120.0}
     bound = {"of": "max(d)", "most": 150.0}
-    best = crank.improve([pull, bound], vary=["O2 A"], starts=1)[0]
-    motion = lw.api.Mechanism(best.description).sweep()
+    best = lw.synthesis.improve(crank, [pull, bound], vary=["O2 A"], starts=1)[0]
+    motion = lw.Mechanism(best.description).sweep()
     assert motion.value("max(d)") <= 150.0
-    free = crank.improve(pull, vary=["O2 A"], starts=1)[0]
-    assert lw.api.Mechanism(free.description).sweep().value("max(d)") > 150.0
+    free = lw.synthesis.improve(crank, pull, vary=["O2 A"], starts=1)[0]
+    assert lw.Mechanism(free.description).sweep().value("max(d)") > 150.0
 
 
 def test_the_largest_miss_is_smaller_than_that_of_least_squares() -> None:
@@ -110,12 +112,12 @@ def test_the_largest_miss_is_smaller_than_that_of_least_squares() -> None:
     at, values = [0, 40, 80, 120, 160], [60, 57, 68, 80, 92]
     goal = {"of": "rocker", "at": at, "values": values}
     by = ["A B", "O4 B"]
-    squares = bar.improve(goal, vary=by, starts=1)[0]
-    level = bar.improve(goal, vary=by, starts=1, fit="minimax")[0]
+    squares = lw.synthesis.improve(bar, goal, vary=by, starts=1)[0]
+    level = lw.synthesis.improve(bar, goal, vary=by, starts=1, fit="minimax")[0]
     assert level.largest < 0.99 * squares.largest
     assert level.total > squares.total
     # two numbers level three misses, of alternating sign (Chebyshev)
-    motion = lw.api.Mechanism(level.description)
+    motion = lw.Mechanism(level.description)
     misses = [motion.solve(at=a)["rocker"] - v for a, v in zip(at, values, strict=True)]
     ranked = np.sort(np.abs(misses))[::-1]
     assert ranked[2] == pytest.approx(ranked[0], rel=0.01)
@@ -127,7 +129,9 @@ def test_points_without_inputs_are_met_on_one_branch(order: str) -> None:
     wanted = bar.with_dimensions({"O2 A": 38.0, "A B": 124.0})
     points = [wanted.solve(at=a).points["B"] for a in (20.0, 75.0, 130.0, 200.0, 290.0)]
     goal = {"point": "B", "points": points, "order": order}
-    best = bar.improve(goal, vary=["O2 A", "A B"], starts=1 if order == "as given" else 6)[0]
+    best = lw.synthesis.improve(
+        bar, goal, vary=["O2 A", "A B"], starts=1 if order == "as given" else 6
+    )[0]
     assert best.sound
     assert best.rms < 1e-8
     assert max(best.misses) < 1e-8
@@ -169,7 +173,7 @@ def test_the_larger_of_two_is_no_number_of_the_motion() -> None:
     (best,) = lw.Task.improve("slider-crank", goals=[goal], vary=["O2 A"], starts=1).solve().designs
     assert lw.Mechanism(best.linkage).solve(at=0.0)["d"] == pytest.approx(160.0)
     with pytest.raises(InputError, match=r'^"max" of one formula: .* takes a name, max\(d\), in'):
-        lw.example("slider-crank").improve({"of": "max(abs(d))", "target": 3.0})
+        lw.synthesis.improve(lw.example("slider-crank"), {"of": "max(abs(d))", "target": 3.0})
 
 
 def test_what_cannot_be_a_goal_says_why() -> None:
@@ -185,13 +189,13 @@ def test_what_cannot_be_a_goal_says_why() -> None:
         ("1 + min(-rocker)", '^"min" of one formula'),
     ):
         with pytest.raises(InputError, match=message):
-            bar.improve({"of": of, "target": 1.0}, starts=1)
+            lw.synthesis.improve(bar, {"of": of, "target": 1.0}, starts=1)
 
 
 def test_numbers_on_which_a_goal_hardly_depends_do_not_hold_the_others_back() -> None:
     """A stroke of 70 needs a shorter crank; rod and offset change it little, or not at all."""
     goal = {"of": "stroke(d)", "target": 70.0}
-    found = lw.example("slider-crank").improve(goal, starts=6)
+    found = lw.synthesis.improve(lw.example("slider-crank"), goal, starts=6)
     assert [design.total for design in found] == pytest.approx([0.0] * 6, abs=1e-12)
 
 
@@ -203,12 +207,14 @@ def test_a_goal_that_numbers_do_not_change_at_the_start_alone_is_none_without_ef
     text = lw.example_text("slider-crank").replace("S  = [0, -20]\n", "").replace("-20]", "0]")
     text = text.replace('"O2", "S", "T"', '"O2", "T"').replace('["S", "T"]', '["O2", "T"]')
     goals = [{"of": "stroke(d)", "target": 84.0}, {"of": "max(d)", "target": 150.0}]
-    assert lw.loads(text).improve(goals, vary=["B A", "d.offset"], starts=1, **further)
+    assert lw.synthesis.improve(
+        lw.loads(text), goals, vary=["B A", "d.offset"], starts=1, **further
+    )
 
 
 def test_rows_whole_turns_apart_differ_in_geared_mechanisms() -> None:
     goal = {"of": "max(B.x)", "target": 100.0}
-    assert lw.example("belt-drive").improve(goal, vary=["A B", "O4 B"], starts=2)
+    assert lw.synthesis.improve(lw.example("belt-drive"), goal, vary=["A B", "O4 B"], starts=2)
 
 
 @pytest.mark.parametrize(
@@ -222,8 +228,8 @@ def test_rows_whole_turns_apart_differ_in_geared_mechanisms() -> None:
 def test_what_a_design_says_of_a_number_is_what_its_motion_has(goal: dict[str, Any]) -> None:
     bar = lw.example("four-bar")
     of = str(goal["of"])
-    for design in bar.improve(goal, starts=2):
-        motion = lw.api.Mechanism(design.description).sweep()
+    for design in lw.synthesis.improve(bar, goal, starts=2):
+        motion = lw.Mechanism(design.description).sweep()
         parts = [motion.value(name) for name in of.split(" / ")]
         miss = abs(parts[0] / parts[1] if len(parts) == 2 else parts[0]) - goal["target"]
         # certified positions are rounded once more
@@ -236,8 +242,8 @@ def test_a_goal_that_is_missed_says_by_how_much_though_rows_are_far_apart() -> N
         inputs=lw.Input(link="crank", start=0, stop=360, step=30)
     )
     goals = [{"of": "stroke(d)", "target": 90.0}, {"of": "max(d)", "target": 130.0}]
-    for design in crank.improve(goals, vary=["O2 A"], starts=2):
-        motion = lw.api.Mechanism(design.description).sweep(start=0, stop=360, step=1)
+    for design in lw.synthesis.improve(crank, goals, vary=["O2 A"], starts=2):
+        motion = lw.Mechanism(design.description).sweep(start=0, stop=360, step=1)
         misses = {name: abs(motion.value(name) - w) for name, w in
                   (("stroke(d)", 90.0), ("max(d)", 130.0))}  # fmt: skip
         assert max(misses.values()) > 1.0

@@ -28,7 +28,7 @@ def test_gradients_of_lanes_are_those_of_the_single_mechanism() -> None:
     lanes = SolvedLanes(writer, x, position.q[None], np.radians([50.0]), 2)
     found = lanes.at(writer.written(np.array([x, x])), np.radians([[50.0], [50.0]]), np.arange(2))
     slopes = found.values([found.rows.place("B").v.real])[1][:, 0, 0]
-    expected = [bar.gradient("B.x", by=names, at=50.0)[name] for name in names]
+    expected = [lw.design.gradient(bar, "B.x", by=names, at=50.0)[name] for name in names]
     # both solve the same linear equations: a few roundings
     assert slopes == pytest.approx(np.array([expected, expected]), rel=1e-11)
 
@@ -36,17 +36,17 @@ def test_gradients_of_lanes_are_those_of_the_single_mechanism() -> None:
 def test_a_stroke_is_met_to_rounding_and_all_rows_are_proved() -> None:
     crank = lw.example("slider-crank")
     goal = {"of": "stroke(d)", "target": 70.0}
-    best = crank.improve(goal, vary=["O2 A"], starts=2)[0]
+    best = lw.synthesis.improve(crank, goal, vary=["O2 A"], starts=2)[0]
     assert best.sound
-    assert lw.api.Mechanism(best.description).sweep().value("stroke(d)") == pytest.approx(
+    assert lw.Mechanism(best.description).sweep().value("stroke(d)") == pytest.approx(
         70.0, abs=1e-9
     )
 
 
 def test_a_coordinate_of_zero_varies_by_itself() -> None:
     """With both lengths and the stroke 90 known, the offset of an inline crank follows."""
-    best = lw.example("slider-crank").improve(
-        {"of": "stroke(d)", "target": 90.0}, vary=["O2.y"], starts=2
+    best = lw.synthesis.improve(
+        lw.example("slider-crank"), {"of": "stroke(d)", "target": 90.0}, vary=["O2.y"], starts=2
     )[0]
     offset = 20.0 + best.numbers["O2.y"]
     stroke = np.sqrt(160.0**2 - offset**2) - np.sqrt(80.0**2 - offset**2)
@@ -60,10 +60,15 @@ def test_timed_points_of_a_changed_mechanism_give_its_lengths_back() -> None:
     wanted = bar.with_dimensions({"O2 A": 38.0, "A B": 124.0})
     inputs = [0.0, 60.0, 120.0, 200.0, 290.0]
     points = [wanted.solve(at=a).points["B"] for a in inputs]
-    best = bar.improve({"point": "B", "points": points, "inputs": inputs}, starts=2)[0]
+    best = lw.synthesis.improve(bar, {"point": "B", "points": points, "inputs": inputs}, starts=2)[
+        0
+    ]
     assert best.rms < 1e-9
-    bounded = bar.improve(
-        {"point": "B", "points": points, "inputs": inputs}, starts=2, bounds={"A B": (100, 122)}
+    bounded = lw.synthesis.improve(
+        bar,
+        {"point": "B", "points": points, "inputs": inputs},
+        starts=2,
+        bounds={"A B": (100, 122)},
     )[0]
     assert bounded.numbers["A B"] <= 122.0
     assert bounded.rms > best.rms
@@ -88,7 +93,7 @@ def test_a_mechanism_that_cannot_reach_all_points_yet_is_improved_until_it_does(
     }
     start = bar.with_dimensions({"A0 A": 60})
     assert not start.sweep(certify=False).found.all()
-    best = start.improve(goal, vary=list(lengths), starts=1)[0]
+    best = lw.synthesis.improve(start, goal, vary=list(lengths), starts=1)[0]
     assert best.numbers == pytest.approx(lengths, abs=1e-9)
     assert best.sound
     assert repr(best) == f"<ImprovedDesign: total {best.total:.4g}, all rows are proved>"
@@ -110,36 +115,40 @@ def test_starts_that_cannot_be_built_are_left_out() -> None:
         "points": np.stack([path.real, path.imag], axis=1),
         "inputs": motion.inputs["crank"],
     }
-    found = bar.improve(goal, vary=["A P", "B P"], starts=12, spread=0.6)
+    found = lw.synthesis.improve(bar, goal, vary=["A P", "B P"], starts=12, spread=0.6)
     assert found[0].numbers == pytest.approx({"A P": 62.0, "B P": 30.0}, abs=1e-9)
     assert all(design.motion is not None for design in found)
 
 
 def test_a_mechanism_without_unknowns_is_improved() -> None:
-    best = lw.example("pendulum").improve({"of": "max(A.x)", "target": 0.5}, vary=["O A"])[0]
+    best = lw.synthesis.improve(
+        lw.example("pendulum"), {"of": "max(A.x)", "target": 0.5}, vary=["O A"]
+    )[0]
     assert best.numbers["O A"] == pytest.approx(0.5)
 
 
 def test_goals_without_a_meaning_are_refused() -> None:
     bar = lw.example("four-bar")
     with pytest.raises(MechanismError, match="has no target"):
-        bar.improve({"of": "rocker"})
+        lw.synthesis.improve(bar, {"of": "rocker"})
     with pytest.raises(MechanismError, match="contradict each other"):
-        bar.improve({"of": "rocker", "least": 3.0, "most": 2.0})
+        lw.synthesis.improve(bar, {"of": "rocker", "least": 3.0, "most": 2.0})
     with pytest.raises(MechanismError, match="need as many inputs"):
-        bar.improve({"point": "B", "points": [(1, 2), (3, 4)], "inputs": [1]})
+        lw.synthesis.improve(bar, {"point": "B", "points": [(1, 2), (3, 4)], "inputs": [1]})
     with pytest.raises(MechanismError, match="same as point 1"):
-        bar.improve({"point": "B", "points": [(1, 2), (1, 2)]})
+        lw.synthesis.improve(bar, {"point": "B", "points": [(1, 2), (1, 2)]})
     with pytest.raises(InputError, match="got 'least squares'; how misses count is fit ="):
-        bar.improve("least squares")  # type: ignore[arg-type]  # as a caller without types may
+        lw.synthesis.improve(bar, "least squares")  # type: ignore[arg-type]  # as a caller without types may
     with pytest.raises(MechanismError, match=r"is no key of a goal \(keys: target"):
-        bar.improve({"of": "rocker", "taget": 1.0})
+        lw.synthesis.improve(bar, {"of": "rocker", "taget": 1.0})
     with pytest.raises(InputError, match="mixes numbers of the motion"):
-        bar.improve({"of": "stroke(rocker) - rocker", "target": 1.0})
+        lw.synthesis.improve(bar, {"of": "stroke(rocker) - rocker", "target": 1.0})
     slot = lw.example("curved-slot")
     with pytest.raises(InputError, match=r'a fit cannot vary "O4\.x" of'):
-        slot.improve({"of": "max(A.y)", "least": 0.0}, vary=["O4.x", "O2 A"], starts=1)
-    assert slot.improve({"of": "max(A.y)", "least": 0.0}, vary=["O2 A"], starts=1)
+        lw.synthesis.improve(
+            slot, {"of": "max(A.y)", "least": 0.0}, vary=["O4.x", "O2 A"], starts=1
+        )
+    assert lw.synthesis.improve(slot, {"of": "max(A.y)", "least": 0.0}, vary=["O2 A"], starts=1)
 
 
 @pytest.mark.parametrize(
@@ -155,19 +164,19 @@ def test_numbers_that_a_fit_cannot_follow_do_not_vary_by_default(
 ) -> None:
     mechanism = lw.example(name)
     target = 1.01 * mechanism.sweep().value(of)
-    best = mechanism.improve({"of": of, "target": target}, starts=2)[0]
+    best = lw.synthesis.improve(mechanism, {"of": of, "target": target}, starts=2)[0]
     assert best.sound
     assert best.total < 1e-9 * target**2
     assert varied in best.numbers
     assert left_out not in best.numbers
     if left_out:
         with pytest.raises(InputError, match=f'a fit cannot vary "{left_out}"'):
-            mechanism.improve({"of": of, "target": target}, vary=[left_out])
+            lw.synthesis.improve(mechanism, {"of": of, "target": target}, vary=[left_out])
 
 
 def test_a_mechanism_that_no_other_number_fits_is_not_improved() -> None:
     with pytest.raises(InputError, match="has no number that can vary alone"):
-        lw.example("parallel-cranks").improve({"of": "stroke(A1.x)", "target": 1.0})
+        lw.synthesis.improve(lw.example("parallel-cranks"), {"of": "stroke(A1.x)", "target": 1.0})
 
 
 def test_starts_spread_numbers_that_are_zero_by_the_size_of_the_mechanism(
@@ -182,7 +191,7 @@ def test_starts_spread_numbers_that_are_zero_by_the_size_of_the_mechanism(
     monkeypatch.setattr(improving, "fit_numbers", caught)
     goal = {"of": "stroke(d)", "target": 90.0}
     with pytest.raises(InterruptedError):
-        lw.example("slider-crank").improve(goal, vary=["O2 A", "O2.y"], starts=400)
+        lw.synthesis.improve(lw.example("slider-crank"), goal, vary=["O2 A", "O2.y"], starts=400)
     start, others = found[0][0], found[0][1:]
     assert start == pytest.approx([40.0, 0.0])
     # 5 % of the crank, and of the longest link, 120
@@ -204,7 +213,7 @@ def test_a_design_with_a_dead_point_between_two_rows_is_not_sound(tmp_path: Path
     assert end is not None
     assert min(abs(end.input - place) for place in (180.25, 180.75)) < 1e-6
     goal = {"of": "rocker", "at": [90], "values": [float(bar.solve(at=90)["rocker"])]}
-    (design,) = bar.improve(goal, vary=["A B"], starts=1)
+    (design,) = lw.synthesis.improve(bar, goal, vary=["A B"], starts=1)
     assert not design.sound
     assert design.whole_motion is None
     assert "all rows are proved; the branch ends at the dead point crank = 180." in design.message
@@ -212,7 +221,7 @@ def test_a_design_with_a_dead_point_between_two_rows_is_not_sound(tmp_path: Path
     (tmp_path / "bar.toml").write_text(text)
     (judged,) = lw.Task.improve(tmp_path / "bar.toml", **goals).solve().designs
     (defect,) = judged.defects
-    assert defect.kind is lw.DefectKind.RANGE
+    assert defect.kind is lw.synthesis.DefectKind.RANGE
     assert defect.message.startswith("the driven range reaches the dead point crank = 180.")
     # limits that are not in the table do not count
     door = lw.example("garage-door").sweep()
@@ -226,9 +235,9 @@ def test_a_start_that_leads_to_a_dead_point_is_led_again_kept_off_it() -> None:
     bar = lw.example("four-bar")
     goal = {"of": "max(rocker)", "target": 0.8 * bar.sweep().value("max(rocker)")}
     told: list[float] = []
-    found = bar.improve(goal, starts=6, progress=told.append)
+    found = lw.synthesis.improve(bar, goal, starts=6, progress=told.append)
     met = [design for design in found if design.sound and design.total < 1e-12]
-    angles = [lw.api.Mechanism(design.description).sweep()["B.transmission"] for design in met]
+    angles = [lw.Mechanism(design.description).sweep()["B.transmission"] for design in met]
     assert min(np.minimum(a, 180.0 - a).min() for a in angles) > 0.24
     assert len(met) >= 5
     assert [design.sound for design in found] == sorted((d.sound for d in found), reverse=True)
@@ -239,7 +248,7 @@ def test_a_start_that_leads_to_a_dead_point_is_led_again_kept_off_it() -> None:
         if fraction > 0.65:
             raise KeyboardInterrupt
 
-    kept = bar.improve(goal, starts=6, progress=stop)
+    kept = lw.synthesis.improve(bar, goal, starts=6, progress=stop)
     assert len(kept) >= 6
     assert all(design.message.startswith("interrupted") for design in kept)
 
@@ -248,7 +257,7 @@ def test_a_start_that_leads_to_a_dead_point_is_led_again_kept_off_it() -> None:
 def test_designs_at_dead_points_are_replaced_by_those_of_the_same_start() -> None:
     leg = lw.example("jansen-leg")
     goal = {"of": "stroke(F.x)", "target": 1.2 * leg.sweep().value("stroke(F.x)")}
-    found = leg.improve(goal, starts=3)
+    found = lw.synthesis.improve(leg, goal, starts=3)
     # a start of which two lanes end alike has one design
     assert sum(design.sound for design in found) >= 2
 

@@ -52,13 +52,13 @@ def test_starts_that_are_reached_are_improved_when_the_next_ones_are_interrupted
     given: dict[str, Any] = {"vary": ["O2 A"], "starts": 30}
     # the first call is that of the mechanism as it is
     monkeypatch.setattr(fit_problem.FitProblem, "_reach", _stops(fit_problem.FitProblem._reach, 3))
-    found = lw.loads(CRANK).improve(_GOALS, **given)
+    found = lw.synthesis.improve(lw.loads(CRANK), _GOALS, **given)
     assert found[0].sound
     assert found[0].total == pytest.approx(0.0, abs=1e-18)
     assert found[0].message.startswith("interrupted: the best so far")
     monkeypatch.setattr(fit_problem.FitProblem, "_reach", _stops(lambda: None, 1))
     with pytest.raises(KeyboardInterrupt):
-        lw.loads(CRANK).improve(_GOALS, **given)
+        lw.synthesis.improve(lw.loads(CRANK), _GOALS, **given)
 
 
 @pytest.mark.usefixtures("small_parts")
@@ -67,7 +67,9 @@ def test_the_preparation_of_starts_is_counted_and_prepared_starts_are_designs(
 ) -> None:
     told: list[float] = []
     monkeypatch.setattr(fit_problem, "minimise", _stops(lambda: None, 1))
-    found = lw.loads(CRANK).improve(_GOALS, vary=["O2 A"], starts=30, progress=told.append)
+    found = lw.synthesis.improve(
+        lw.loads(CRANK), _GOALS, vary=["O2 A"], starts=30, progress=told.append
+    )
     assert len(found) == 8
     assert found[0].sound
     assert found[0].message.startswith("interrupted: the best so far")
@@ -79,7 +81,7 @@ def test_the_preparation_of_starts_is_counted_and_prepared_starts_are_designs(
 def test_a_front_is_begun_from_the_starts_that_are_reached(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(fit_problem.FitProblem, "_reach", _stops(fit_problem.FitProblem._reach, 2))
     goals = [*_GOALS, {"of": "max(d)", "target": 60}]
-    front = lw.loads(CRANK).improve(goals, vary=["O2 A"], starts=30, front=4)
+    front = lw.synthesis.improve(lw.loads(CRANK), goals, vary=["O2 A"], starts=30, front=4)
     assert front
     assert all(design.message.startswith("interrupted: the best so far") for design in front)
 
@@ -90,17 +92,17 @@ def test_an_interruption_of_the_proofs_of_a_front_keeps_the_designs_that_are_pro
 ) -> None:
     goals = [*_GOALS, {"of": "max(d)", "target": 60}]
     given: dict[str, Any] = {"vary": ["O2 A"], "starts": 1, "front": 5}
-    every = lw.loads(CRANK).improve(goals, **given)
+    every = lw.synthesis.improve(lw.loads(CRANK), goals, **given)
     assert len(every) == 5
     stops = _stops(proved_design.fitted_design, proofs + 1)
     monkeypatch.setattr(front_designs, "fitted_design", stops)
-    some = lw.loads(CRANK).improve(goals, **given)
+    some = lw.synthesis.improve(lw.loads(CRANK), goals, **given)
     assert [design.numbers for design in some] == [design.numbers for design in every[:proofs]]
     assert all(design.sound for design in some)
     assert all(design.message.startswith("interrupted: the best so far") for design in some)
     monkeypatch.setattr(front_designs, "fitted_design", _stops(lambda: None, 1))
     with pytest.raises(KeyboardInterrupt):
-        lw.loads(CRANK).improve(goals, **given)
+        lw.synthesis.improve(lw.loads(CRANK), goals, **given)
 
 
 def test_refused_designs_of_a_front_are_kept_too(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -126,7 +128,7 @@ def test_the_proofs_of_a_front_are_counted_and_finish_when_their_progress_is_int
     goals = [*_GOALS, {"of": "max(d)", "target": 60}]
     given: dict[str, Any] = {"vary": ["O2 A"], "starts": 1, "front": 5}
     told: list[float] = []
-    lw.loads(CRANK).improve(goals, **given, progress=told.append)
+    lw.synthesis.improve(lw.loads(CRANK), goals, **given, progress=told.append)
     assert told == sorted(told)
     assert [share for share in told if share >= 0.9] == pytest.approx([0.9, 0.92, 0.94, 0.96, 0.98])
 
@@ -134,7 +136,7 @@ def test_the_proofs_of_a_front_are_counted_and_finish_when_their_progress_is_int
         if fraction > 0.93:
             raise KeyboardInterrupt
 
-    front = lw.loads(CRANK).improve(goals, **given, progress=stop)
+    front = lw.synthesis.improve(lw.loads(CRANK), goals, **given, progress=stop)
     assert len(front) == 5
     assert all(design.message.startswith("interrupted: the best so far") for design in front)
 
@@ -143,8 +145,8 @@ def test_a_front_is_kept_when_the_choice_of_its_next_lanes_is_interrupted(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     goals = [*_GOALS, {"of": "max(d)", "target": 60}]
-    monkeypatch.setattr(front_fit, "objective_spans", _stops(lambda: None, 1))
-    front = lw.loads(CRANK).improve(goals, vary=["O2 A"], starts=1, front=5)
+    monkeypatch.setattr(front_fit, "objective_spans", _stops(front_fit.objective_spans, 2))
+    front = lw.synthesis.improve(lw.loads(CRANK), goals, vary=["O2 A"], starts=1, front=5)
     assert front
     assert all(design.message.startswith("interrupted: the best so far") for design in front)
 
@@ -153,7 +155,7 @@ def test_results_do_not_depend_on_the_cores(monkeypatch: pytest.MonkeyPatch) -> 
     numbers = []
     for count in (1, 3):
         monkeypatch.setattr(lane_work, "cores", lambda count=count: count)
-        found = lw.loads(CRANK).improve(_GOALS, starts=30, seed=3)
+        found = lw.synthesis.improve(lw.loads(CRANK), _GOALS, starts=30, seed=3)
         numbers.append([list(design.numbers.values()) for design in found])
     assert numbers[0] == numbers[1]
 
@@ -161,10 +163,10 @@ def test_results_do_not_depend_on_the_cores(monkeypatch: pytest.MonkeyPatch) -> 
 def test_proofs_that_are_interrupted_keep_the_designs_that_are_proved(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
-    every = lw.loads(CRANK).improve(_GOALS, starts=5)
+    every = lw.synthesis.improve(lw.loads(CRANK), _GOALS, starts=5)
     assert len(every) > 2
     monkeypatch.setattr(improving, "fitted_design", _stops(proved_design.fitted_design, 3))
-    some = lw.loads(CRANK).improve(_GOALS, starts=5)
+    some = lw.synthesis.improve(lw.loads(CRANK), _GOALS, starts=5)
     assert len(some) == 2
     assert all(design.message.startswith("interrupted: the best so far") for design in some)
 
@@ -206,7 +208,7 @@ def test_the_first_search_is_kept_when_the_second_is_interrupted(
     goal = {"of": "stroke(rocker)", "target": 150}
     bar = lw.example("four-bar")
     monkeypatch.setattr(improving, "fit_numbers", _stops(mechanism_fit.fit_numbers, 2))
-    found = bar.improve(goal, starts=4, spread=0.3)
+    found = lw.synthesis.improve(bar, goal, starts=4, spread=0.3)
     assert len(found) == 4
     assert all(design.message.startswith("interrupted") for design in found)
 

@@ -62,7 +62,7 @@ step = 5
 def test_a_tenth_more_stroke_is_reached_by_special_mechanisms(name: str, of: str) -> None:
     mechanism = lw.example(name)
     wanted = 1.1 * mechanism.sweep(certify=False).value(of)
-    best = mechanism.improve({"of": of, "target": wanted}, starts=2)[0]
+    best = lw.synthesis.improve(mechanism, {"of": of, "target": wanted}, starts=2)[0]
     assert best.sound
     moved = lw.Mechanism(best.description).sweep(certify=False)
     assert moved.value(of) == pytest.approx(wanted, rel=1e-6)
@@ -73,7 +73,7 @@ def test_a_tenth_more_stroke_is_reached_by_special_mechanisms(name: str, of: str
 
 def test_gears_keep_their_distance_of_centres() -> None:
     goals = [{"of": "max(C.y)", "target": 150}, {"of": "min(C.y)", "target": 90}]
-    best = lw.loads(_GEARED).improve(goals, starts=2)[0]
+    best = lw.synthesis.improve(lw.loads(_GEARED), goals, starts=2)[0]
     assert best.sound
     # of the weighted misses [mm]
     assert best.largest < 1e-6
@@ -86,7 +86,7 @@ def test_a_standstill_is_refused_with_its_reason() -> None:
     task = lw.Task.improve("four-bar", goals=goals, vary=["A B", "O4 B"], bounds=held, starts=1)
     found = task.solve()
     assert (found.sound, found.delivered) == (0, ())
-    assert found.defects == {lw.DefectKind.UNMOVED: 1}
+    assert found.defects == {lw.synthesis.DefectKind.UNMOVED: 1}
     (defect,) = found.designs[0].defects
     assert "the mechanism as it was is no farther from its goals" in defect.message
     assert "it misses stroke(rocker) by 13.78" in defect.message
@@ -94,7 +94,7 @@ def test_a_standstill_is_refused_with_its_reason() -> None:
     # a mechanism that meets its goals is one
     bar = lw.example("four-bar")
     met = {"of": "stroke(rocker)", "target": bar.sweep().value("stroke(rocker)")}
-    assert bar.improve(met, vary=["A B"], starts=1)[0].sound
+    assert lw.synthesis.improve(bar, met, vary=["A B"], starts=1)[0].sound
 
 
 @pytest.mark.parametrize(("angle", "sound"), [(0.05, False), (0.2, True)])

@@ -18,7 +18,7 @@ from linkwork.synthesis.improvement.fronts import spread, undominated
 CRANK = lw.example_text("slider-crank").replace("step = 1\n", "step = 30\n")
 
 
-def _values(front: tuple[lw.ImprovedDesign, ...]) -> Array:
+def _values(front: tuple[lw.synthesis.ImprovedDesign, ...]) -> Array:
     return np.array([list(design.goals.values()) for design in front])
 
 
@@ -40,7 +40,9 @@ def test_a_front_of_two_lengths_is_that_of_the_closed_form() -> None:
     crank = lw.loads(CRANK)
     goals = [{"of": "stroke(d)", "target": 70}, {"of": "max(d)", "target": 60}]
     bounds = {"O2 A": (10, 50), "B A": (80, 200)}
-    front = crank.improve(goals, vary=["O2 A", "B A"], bounds=bounds, front=5, starts=1)
+    front = lw.synthesis.improve(
+        crank, goals, vary=["O2 A", "B A"], bounds=bounds, front=5, starts=1
+    )
     values = _values(front)
     assert len(front) == 5
     assert not _dominated(values)
@@ -57,7 +59,7 @@ def test_a_front_of_two_lengths_is_that_of_the_closed_form() -> None:
     steps = np.linalg.norm(np.diff(values / np.ptp(values, axis=0), axis=0), axis=1)
     assert steps.max() < 2.0 * steps.min()
     for design in front:
-        assert lw.api.Mechanism(design.description).sweep().certified.all()
+        assert lw.Mechanism(design.description).sweep().certified.all()
         assert design.sound
 
 
@@ -65,7 +67,9 @@ def test_parts_of_a_front_that_no_weighted_sum_reaches_are_found() -> None:
     """u = sqrt(sin s), v = sqrt(cos s): u⁴ + v⁴ = 1 bulges outwards, also as squares."""
     crank = lw.loads(CRANK)
     goals = [{"of": f"sqrt({f}(stroke(d)))", "target": 0} for f in ("sin", "cos")]
-    front = crank.improve(goals, vary=["O2 A"], bounds={"O2 A": (2.5, 42.5)}, front=6, starts=1)
+    front = lw.synthesis.improve(
+        crank, goals, vary=["O2 A"], bounds={"O2 A": (2.5, 42.5)}, front=6, starts=1
+    )
     values = _values(front)
     assert len(front) == 6
     assert (values**4).sum(axis=1) == pytest.approx(np.ones(6), abs=1e-9)
@@ -94,10 +98,14 @@ def test_a_front_that_lies_on_a_bound_and_is_ended_by_one_is_found_whole(
     crank = lw.loads(CRANK)
     goals = [{"of": "max(d)", "target": 115.113}, {"of": "min(d)", "target": 51.527}]
     bounds = {"O2 A": ends, "B A": (95.57, 178.636)}
-    front = crank.improve(
-        [*goals, *([bound] if bound else [])], vary=["O2 A", "B A"], bounds=bounds, front=8,
+    front = lw.synthesis.improve(
+        crank,
+        [*goals, *([bound] if bound else [])],
+        vary=["O2 A", "B A"],
+        bounds=bounds,
+        front=8,
         starts=1,
-    )  # fmt: skip
+    )
     values = _values(front)
     a, rod = (x.ravel() for x in np.meshgrid(np.linspace(ends[0], largest, 200),
                                              np.linspace(*bounds["B A"], 200)))  # fmt: skip
@@ -118,12 +126,12 @@ def test_a_front_that_lies_on_a_bound_and_is_ended_by_one_is_found_whole(
 def test_equal_goals_and_goals_met_together_have_one_design() -> None:
     crank = lw.loads(CRANK)
     stroke = {"of": "stroke(d)", "target": 70}
-    (twice,) = crank.improve([stroke, stroke], vary=["O2 A"], front=4, starts=1)
+    (twice,) = lw.synthesis.improve(crank, [stroke, stroke], vary=["O2 A"], front=4, starts=1)
     assert list(twice.goals) == ["stroke(d)", "stroke(d) (2)"]
     assert max(twice.goals.values()) < 1e-9
     wanted = crank.with_dimensions({"O2 A": 35.0, "B A": 110.0}).sweep(certify=False)
     goals = [{"of": of, "target": wanted.value(of)} for of in ("stroke(d)", "max(d)")]
-    (both,) = crank.improve(goals, vary=["O2 A", "B A"], front=4, starts=1)
+    (both,) = lw.synthesis.improve(crank, goals, vary=["O2 A", "B A"], front=4, starts=1)
     assert both.numbers == pytest.approx({"O2 A": 35.0, "B A": 110.0}, abs=1e-6)
 
 
@@ -131,11 +139,11 @@ def test_a_bound_ends_a_front_and_one_that_nothing_keeps_is_told() -> None:
     crank = lw.loads(CRANK)
     goals = [{"of": "stroke(d)", "target": 70}, {"of": "max(d)", "target": 60}]
     given: dict[str, Any] = {"vary": ["O2 A"], "starts": 1, "front": 3}
-    front = crank.improve([*goals, {"of": "stroke(d)", "least": 50}], **given)
+    front = lw.synthesis.improve(crank, [*goals, {"of": "stroke(d)", "least": 50}], **given)
     strokes = [70 - design.goals["stroke(d)"] for design in front]
     assert min(strokes) == pytest.approx(50.0, abs=1e-4)
     assert min(strokes) >= 50.0
-    (broken,) = crank.improve([*goals, {"of": "max(d)", "most": 10}], **given)
+    (broken,) = lw.synthesis.improve(crank, [*goals, {"of": "max(d)", "most": 10}], **given)
     assert not broken.sound
     (told,) = broken.broken
     assert told.startswith("goal max(d) comes up to ")
@@ -153,7 +161,7 @@ def test_an_interrupted_front_keeps_the_designs_so_far(until: float) -> None:
 
     crank = lw.loads(CRANK)
     goals = [{"of": "stroke(d)", "target": 70}, {"of": "max(d)", "target": 60}]
-    front = crank.improve(goals, vary=["O2 A"], front=5, starts=1, progress=stop)
+    front = lw.synthesis.improve(crank, goals, vary=["O2 A"], front=5, starts=1, progress=stop)
     assert front
     assert not _dominated(_values(front))
     for design in front:
@@ -170,7 +178,9 @@ def test_three_goals_have_a_front_that_spreads() -> None:
         {"of": "max(A.y)", "target": 15},
     ]
     bounds = {"O2 A": (10, 50), "B A": (80, 200)}
-    front = crank.improve(goals, vary=["O2 A", "B A"], bounds=bounds, front=6, starts=1)
+    front = lw.synthesis.improve(
+        crank, goals, vary=["O2 A", "B A"], bounds=bounds, front=6, starts=1
+    )
     values = _values(front)
     assert len(front) == 6
     assert not _dominated(values)
@@ -186,7 +196,8 @@ def test_points_and_a_goal_have_a_front() -> None:
     inputs = [0.0, 60.0, 120.0, 200.0, 290.0]
     points = {"point": "B", "points": [wanted.solve(at=a).points["B"] for a in inputs]}
     stroke = {"of": "stroke(rocker)", "target": 30}
-    front = bar.improve(
+    front = lw.synthesis.improve(
+        bar,
         [{**points, "inputs": inputs}, stroke],
         vary=["O2 A", "A B"],
         bounds={"O2 A": (20, 45)},
@@ -234,7 +245,7 @@ def test_fronts_without_a_meaning_are_refused() -> None:
     ):
         own: dict[str, Any] = given
         with pytest.raises(MechanismError, match=message):
-            bar.improve(goals, **own)
+            lw.synthesis.improve(bar, goals, **own)
 
 
 def test_sound_designs_that_equal_later_ones_are_not_among_the_refused(
@@ -242,7 +253,7 @@ def test_sound_designs_that_equal_later_ones_are_not_among_the_refused(
 ) -> None:
     monkeypatch.setattr(front_designs, "alike", lambda values, *_: np.arange(len(values)))
     goals = [{"of": "stroke(d)", "target": 70}, {"of": "max(d)", "target": 60}]
-    front = lw.loads(CRANK).improve(goals, vary=["O2 A"], starts=1, front=5)
+    front = lw.synthesis.improve(lw.loads(CRANK), goals, vary=["O2 A"], starts=1, front=5)
     assert [design.sound for design in front] == [True]
 
 
@@ -250,7 +261,7 @@ def test_a_front_that_no_start_leads_to_is_empty() -> None:
     goals = [{"of": "stroke(d)", "target": 90}, {"of": "max(d)", "target": 60}]
     given: dict[str, Any] = {"vary": ["O2 A", "B A"], "starts": 2, "front": 4}
     never = {"O2 A": (100, 120), "B A": (10, 20)}
-    assert lw.loads(CRANK).improve(goals, bounds=never, **given) == ()
+    assert lw.synthesis.improve(lw.loads(CRANK), goals, bounds=never, **given) == ()
     found = lw.Task.improve("slider-crank", goals=goals, bounds=never, **given).solve()
     assert not found.designs
 
@@ -260,4 +271,4 @@ def test_a_front_that_no_start_leads_to_is_empty() -> None:
 def test_targets_beyond_floating_point_are_refused(target: float, front: int) -> None:
     goals = [{"of": "stroke(d)", "target": target}, {"of": "max(d)", "target": 60}]
     with pytest.raises(MechanismError, match=r"goals\[1\].target  must be within ±1e\+12"):
-        lw.loads(CRANK).improve(goals, vary=["O2 A"], starts=1, front=front)
+        lw.synthesis.improve(lw.loads(CRANK), goals, vary=["O2 A"], starts=1, front=front)

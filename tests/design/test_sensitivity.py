@@ -56,7 +56,7 @@ AT = (40.0, 120.0, 0.0)
 
 
 def test_a_slider_crank_has_the_derivatives_of_its_closed_form() -> None:
-    found = read_example("slider-crank").sensitivity("d", at=60, by=NAMES)
+    found = lw.design.sensitivity(read_example("slider-crank"), "d", at=60, by=NAMES)
     # published for this machine to sixteen digits
     assert found["O2 A"] == pytest.approx(0.0570816958859256, rel=1e-13)
     assert found["B A"] == pytest.approx(1.1231958120288066, rel=1e-13)
@@ -65,13 +65,13 @@ def test_a_slider_crank_has_the_derivatives_of_its_closed_form() -> None:
 
 
 def test_rates_have_the_derivatives_of_their_closed_form() -> None:
-    found = read_example("slider-crank").gradient("d.d1", at=60, by=NAMES)
+    found = lw.design.gradient(read_example("slider-crank"), "d.d1", at=60, by=NAMES)
     assert list(found.values()) == pytest.approx(complex_step(slide_rate, *AT), rel=1e-12)
 
 
 def test_rows_of_a_table_have_the_derivatives_of_positions() -> None:
     mechanism = read_example("slider-crank")
-    found = mechanism.gradient("d", by=NAMES)
+    found = lw.design.gradient(mechanism, "d", by=NAMES)
     for row in (0, 60, 250):
         wanted = complex_step(partial(slide, angle=math.radians(row)), *AT)
         own = [np.asarray(found[n])[row] for n in NAMES]
@@ -90,17 +90,17 @@ def test_a_dead_point_moves_as_its_closed_form() -> None:
     at = [lengths[n] for n in names]
     angle = math.acos(cosine(*at).real)
     wanted = [-math.degrees(slope / math.sin(angle)) for slope in complex_step(cosine, *at)]
-    upper = mechanism.sensitivity("limit.lower", by=names)
+    upper = lw.design.sensitivity(mechanism, "limit.lower", by=names)
     assert upper.value == pytest.approx(math.degrees(angle), abs=1e-9)
     assert [upper[n] for n in names] == pytest.approx(wanted, rel=1e-9)
-    lower = mechanism.sensitivity("limit.upper", by=names)
+    lower = lw.design.sensitivity(mechanism, "limit.upper", by=names)
     assert [lower[n] for n in names] == pytest.approx([-x for x in wanted], rel=1e-9)
 
 
 def test_an_extreme_at_a_dead_point_moves_with_it() -> None:
     lengths = {"O2 A": 80.0, "A B": 120.0, "O4 B": 80.0, "O2 O4": 100.0}
     mechanism = read_example("four-bar").changed(lengths=lengths)
-    found = mechanism.sensitivity("stroke(rocker)", by=["A B"])
+    found = lw.design.sensitivity(mechanism, "stroke(rocker)", by=["A B"])
     other = extrapolated(
         lambda x: {"stroke": changed_by(mechanism, "A B", x).sweep().value("stroke(rocker)")},
         120.0, 0.05,
@@ -112,7 +112,7 @@ def test_an_extreme_at_a_dead_point_moves_with_it() -> None:
 @pytest.mark.parametrize("of", ["stroke(d)", "max(rod)", "mean(d)", "path_length(B)"])
 def test_numbers_of_a_motion_have_the_derivatives_of_their_rows(of: str) -> None:
     mechanism = read_example("slider-crank").changed(inputs=[lw.Input(link="crank", step=5)])
-    found = mechanism.sensitivity(of, by=["O2 A"])
+    found = lw.design.sensitivity(mechanism, of, by=["O2 A"])
     other = extrapolated(
         lambda x: {of: changed_by(mechanism, "O2 A", x).sweep().value(of)}, 40.0, 0.1
     )
@@ -136,19 +136,19 @@ def test_a_dwell_moves_as_its_closed_form(start: float, step: float) -> None:
     """r cos t stays within a band b of its extreme for 2 acos(1 - b/r)."""
     motion = around(start, -start, step)
     r, band = 2.0, 0.3
-    found = motion.sensitivity(f"dwell(x, {band})", by=["r"])
+    found = lw.design.sensitivity(motion, f"dwell(x, {band})", by=["r"])
     cosine = 1.0 - band / r
     by_r = -2.0 * (band / r**2) / math.sqrt(1.0 - cosine**2)
     # the slope of the cubic between rows
     assert found.value == pytest.approx(math.degrees(2.0 * math.acos(cosine)), rel=1e-8)
     assert found["r"] == pytest.approx(math.degrees(by_r), rel=1e-8)
-    begins = motion.sensitivity(f"dwell_start(x, {band})", by=["r"])
+    begins = lw.design.sensitivity(motion, f"dwell_start(x, {band})", by=["r"])
     assert abs(float(begins["r"])) == pytest.approx(abs(math.degrees(by_r)) / 2.0, rel=1e-8)
 
 
 def test_a_dwell_that_is_the_whole_table_does_not_change() -> None:
-    found = around(0, 360).sensitivity("dwell(x, 5)", by=["r"])
-    assert found.status is lw.SensitivityStatus.FOUND
+    found = lw.design.sensitivity(around(0, 360), "dwell(x, 5)", by=["r"])
+    assert found.status is lw.design.SensitivityStatus.FOUND
     assert (float(found.value), float(found["r"])) == (360.0, 0.0)
 
 
@@ -156,7 +156,7 @@ def test_a_dwell_that_is_the_whole_table_does_not_change() -> None:
 def test_a_time_ratio_has_the_derivative_of_its_extremes(step: float) -> None:
     mechanism = around(0, 360 if step > 0 else -360, step)
     for name, at in (("c", 1.0), ("s", 0.5), ("r", 2.0)):
-        found = mechanism.sensitivity("time_ratio(mixed)", by=[name])
+        found = lw.design.sensitivity(mechanism, "time_ratio(mixed)", by=[name])
 
         def ratio(x: float, name: str = name) -> dict[str, float]:
             return {"": changed_by(mechanism, name, x).sweep().value("time_ratio(mixed)")}
@@ -165,15 +165,15 @@ def test_a_time_ratio_has_the_derivative_of_its_extremes(step: float) -> None:
 
 
 def test_a_time_ratio_of_equal_strokes_has_a_corner() -> None:
-    found = around(0, 360).sensitivity("time_ratio(x)", by=["r"])
-    assert found.status is lw.SensitivityStatus.CORNER
+    found = lw.design.sensitivity(around(0, 360), "time_ratio(x)", by=["r"])
+    assert found.status is lw.design.SensitivityStatus.CORNER
 
 
 def test_a_length_given_by_a_formula_varies_alone_and_with_its_dimension() -> None:
     mechanism = read_example("geared-five-bar")
-    found = mechanism.sensitivity("rod1", at=60, by=["a", "O A"])
+    found = lw.design.sensitivity(mechanism, "rod1", at=60, by=["a", "O A"])
     assert found["a"] == pytest.approx(found["O A"], rel=1e-14)
-    assert "O A" not in mechanism.sensitivity("rod1", at=60).derivatives
+    assert "O A" not in lw.design.sensitivity(mechanism, "rod1", at=60).derivatives
 
 
 @pytest.mark.parametrize("name", thinned(driven_examples(), 12))
@@ -190,7 +190,7 @@ def test_all_quantities_of_a_library_mechanism_have_the_derivatives_of_its_equat
 
 def test_sketched_coordinates_that_only_select_a_shape_have_no_effect() -> None:
     """Three points in line are fitted by an iteration from the sketch; its result knows it not."""
-    found = read_example("stephenson-valve-gear").sensitivity("x", at=50)
+    found = lw.design.sensitivity(read_example("stephenson-valve-gear"), "x", at=50)
     assert found["F S G"] != 0.0
     assert [found[f"{p}.{axis}"] for p in ("F", "G", "S") for axis in "xy"] == [0.0] * 6
 
@@ -238,7 +238,7 @@ def test_a_gradient_needs_no_more_nodes_for_more_numbers() -> None:
 def test_a_dead_point_has_no_finite_sensitivity() -> None:
     lengths = {"O2 A": 80.0, "A B": 120.0, "O4 B": 80.0, "O2 O4": 100.0}
     mechanism = read_example("four-bar").changed(lengths=lengths)
-    found = mechanism.sensitivity("rocker", by=["A B"])
+    found = lw.design.sensitivity(mechanism, "rocker", by=["A B"])
     dead = [word == "dead point" for word in mechanism.sweep().limit]
     statuses = [status.name for status, row in zip(found.statuses, dead, strict=True) if row]
     assert statuses == ["DEAD_POINT", "DEAD_POINT"]
@@ -249,21 +249,21 @@ def test_a_dead_point_has_no_finite_sensitivity() -> None:
 
 def test_a_missing_position_has_a_status_and_no_numbers() -> None:
     lengths = {"O2 A": 80.0, "A B": 120.0, "O4 B": 80.0, "O2 O4": 100.0}
-    found = read_example("four-bar").changed(lengths=lengths).sensitivity("rocker", at=5)
-    assert found.status is lw.SensitivityStatus.NO_POSITION
+    found = lw.design.sensitivity(read_example("four-bar").changed(lengths=lengths), "rocker", at=5)
+    assert found.status is lw.design.SensitivityStatus.NO_POSITION
     assert math.isnan(found["A B"])
 
 
 def test_a_number_that_cannot_vary_alone_is_refused_with_its_reason() -> None:
     bar = read_example("four-bar")
-    found = bar.sensitivity("rocker", at=60)
+    found = lw.design.sensitivity(bar, "rocker", at=60)
     assert "ground coordinates are exact" in found.refused["O2 O4"]
     with pytest.raises(
         InputError, match='"O2 O4" cannot vary: ground coordinates are exact and give lengths'
     ):
-        bar.sensitivity("rocker", at=60, by=["O2 O4"])
+        lw.design.sensitivity(bar, "rocker", at=60, by=["O2 O4"])
     stressed = read_example("parallel-cranks")
-    refused = stressed.sensitivity(stressed.loop_equations.inputs[0].name).refused
+    refused = lw.design.sensitivity(stressed, stressed.loop_equations.inputs[0].name).refused
     assert "a redundant link does not fit any more" in refused.values()
 
 
@@ -276,8 +276,8 @@ def test_a_number_at_a_corner_of_its_formula_has_no_derivative_and_says_so(formu
     bar = lw.loads(text.replace("[points]\n", "[dimensions]\na = 40\n\n[points]\n"))
     told = r'^"a" cannot vary: at 40 a formula of it has a corner .*: change the number a little$'
     with pytest.raises(InputError, match=told):
-        bar.gradient("rocker", by=["a"], at=60)
-    assert "a corner" in bar.sensitivity("rocker", at=60).refused["a"]
+        lw.design.gradient(bar, "rocker", by=["a"], at=60)
+    assert "a corner" in lw.design.sensitivity(bar, "rocker", at=60).refused["a"]
 
 
 @pytest.mark.parametrize(
@@ -293,12 +293,12 @@ def test_a_number_at_a_corner_of_its_formula_has_no_derivative_and_says_so(formu
 )
 def test_wrong_names_are_refused(of: str, by: list[str] | None, message: str) -> None:
     with pytest.raises((InputError, UnknownNameError), match=message):
-        read_example("slider-crank").sensitivity(of, at=60, by=by)
+        lw.design.sensitivity(read_example("slider-crank"), of, at=60, by=by)
 
 
 def test_a_motion_without_dead_point_has_no_limit_to_differentiate() -> None:
     with pytest.raises(InputError, match="no dead point above its start"):
-        read_example("slider-crank").sensitivity("limit.upper")
+        lw.design.sensitivity(read_example("slider-crank"), "limit.upper")
 
 
 def test_a_plain_zero_or_one_leaves_a_taped_number_as_it_is() -> None:

@@ -31,7 +31,7 @@ def rotor(
 def test_a_pulse_is_seen_however_short_it_is(width: float, step: float) -> None:
     """The mean is 100 + 20,000 of the pulse's share; the flywheel gives what the pulse exceeds."""
     pulse = f"20000*(crank > 100.1)*(crank < {100.1 + width})"
-    found = rotor(f"-(100 + {pulse})", step=step).flywheel(0.02)
+    found = lw.design.flywheel(rotor(f"-(100 + {pulse})", step=step), 0.02)
     mean = 100.0 + 20000.0 * width / 360.0
     energy = (20100.0 - mean) * math.radians(width)
     assert found.mean == pytest.approx(mean, rel=ROUNDING)
@@ -47,15 +47,17 @@ def test_a_pulse_is_seen_however_short_it_is(width: float, step: float) -> None:
     [
         ("2000*(abs(crank - 100.5) < 0.2)", 2000 * math.radians(0.4)),
         # ∫ (cos x - cos a) between its zeros, for a of 0.81 degrees
-        ("2000*max(0, sin(crank) - 0.9999)", 4000 * (
-            math.sin(math.acos(0.9999)) - 0.9999 * math.acos(0.9999))),
+        (
+            "2000*max(0, sin(crank) - 0.9999)",
+            4000 * (math.sin(math.acos(0.9999)) - 0.9999 * math.acos(0.9999)),
+        ),
         ("2000*(0.3 - min(0.3, abs(crank - 37.3)))", 2000 * 0.3 * math.radians(0.3)),
         ("2000*(A.x > 0.02999)", 4000 * math.acos(0.02999 / 0.03)),
     ],
-)  # fmt: skip
+)
 def test_switches_lie_at_zeros_within_a_step(pulse: str, area: float) -> None:
     """Two changes of sign between neighbouring rows, also of functions with corners."""
-    found = rotor(f"-(100 + {pulse})", step=5.0).flywheel(0.02)
+    found = lw.design.flywheel(rotor(f"-(100 + {pulse})", step=5.0), 0.02)
     # arc cosines near 1 lose half their digits
     assert found.mean - 100.0 == pytest.approx(area / math.tau, rel=1e-9)
 
@@ -64,7 +66,7 @@ def test_switches_lie_at_zeros_within_a_step(pulse: str, area: float) -> None:
 def test_harmonics_of_a_pulse_are_its_fourier_series(start: float, stop: float) -> None:
     pulse = "-(100 + 2000*(crank > 100.1)*(crank < 100.9))"
     machine = rotor(pulse, step=math.copysign(1.0, stop - start), start=start, stop=stop)
-    found = machine.harmonics("crank.effort", 40)
+    found = lw.design.harmonics(machine, "crank.effort", 40)
     orders = np.arange(1, 41)
     exact = 2.0 * 2000.0 / (math.pi * orders) * np.sin(orders * math.radians(0.4))
     assert found.amplitude == pytest.approx(exact, rel=1e-11)
@@ -73,7 +75,7 @@ def test_harmonics_of_a_pulse_are_its_fourier_series(start: float, stop: float) 
 
 def test_a_motor_bears_the_peak_and_the_mean_square_of_a_pulse() -> None:
     machine = rotor("-(100 + 2000*(crank > 100.1)*(crank < 100.9))", step=5.0)
-    found = machine.motor_check(stall=2000.0, free_speed="1200 rpm")
+    found = lw.design.motor_check(machine, stall=2000.0, free_speed="1200 rpm")
     square = 100.0**2 + (2100.0**2 - 100.0**2) * 0.8 / 360.0
     assert found.rms == pytest.approx(math.sqrt(square), rel=ROUNDING)
     assert found.peak == pytest.approx(2100.0, rel=1e-13)
@@ -94,7 +96,7 @@ def test_a_spring_through_no_length_turns_round_within_a_step() -> None:
         inputs=lw.Input(link="crank", start=0, stop=360, step=5, speed="300 rpm"),
         springs=[lw.Spring(name="k", between=("P", "A"), stiffness=stiffness, free=free)],
     )
-    found = machine.motor_check(stall=1.0, free_speed="1200 rpm")
+    found = lw.design.motor_check(machine, stall=1.0, free_speed="1200 rpm")
     x, w = np.polynomial.legendre.leggauss(60)
     half = math.pi * (1.0 + x) / 2.0
     effort = stiffness * (2.0 * r * np.sin(half) - free) * r * np.cos(half)
@@ -127,7 +129,7 @@ def test_the_jumps_of_a_cams_law_are_closed_in() -> None:
         masses={"follower": lw.Mass(mass=mass)},
         inputs=lw.Input(link="disc", start=0, stop=360, step=7.2, speed="300 rpm"),
     )  # fmt: skip
-    found = cam.motor_check(stall=1e3, free_speed="1200 rpm")
+    found = lw.design.motor_check(cam, stall=1e3, free_speed="1200 rpm")
     square = 0.0
     for over in (math.pi / 2, 1.5 * math.pi):
         n = math.pi / over
@@ -160,7 +162,7 @@ def there_and_back() -> lw.Mechanism:
 
 def test_a_motor_is_sized_over_the_whole_time_of_a_law() -> None:
     """Torque J φ̈ + m g cos φ / 2 of the 3-4-5 polynomial, on a fine grid."""
-    found = there_and_back().motor_check(stall=200, free_speed="120 rpm")
+    found = lw.design.motor_check(there_and_back(), stall=200, free_speed="120 rpm")
     x = np.linspace(0.0, 1.0, 200_001)
     angle = math.pi / 2 * (10 * x**3 - 15 * x**4 + 6 * x**5)
     rate = math.pi / 2 / 0.5 * (30 * x**2 - 60 * x**3 + 30 * x**4)
@@ -178,22 +180,27 @@ def test_a_motor_is_sized_over_the_whole_time_of_a_law() -> None:
     assert found.fits
     assert found.units["input"] == "s"
     # fast where it needs little torque, but too fast for this motor
-    assert not there_and_back().motor_check(stall=200, free_speed="50 rpm").fits
+    assert not lw.design.motor_check(there_and_back(), stall=200, free_speed="50 rpm").fits
 
 
 @pytest.mark.parametrize(
     ("ask", "message"),
     [
-        (lambda m: m.flywheel(0.05), "a law fixes the speed of the input"),
-        (lambda m: m.harmonics("arm.effort"), "needs a turn of the input at constant speed"),
-        (lambda m: m.counterweights(0.1), "no four-bar"),
-        (lambda m: m.equilibria(), "a law drives"),
+        (lambda m: lw.design.flywheel(m, 0.05), "a law fixes the speed of the input"),
         (
-            lambda m: m.motor_check(motor=lw.Motor(speeds=("0 rpm", "20 rpm"), torques=(9, 9))),
+            lambda m: lw.design.harmonics(m, "arm.effort"),
+            "needs a turn of the input at constant speed",
+        ),
+        (lambda m: lw.design.counterweights(m, 0.1), "no four-bar"),
+        (lambda m: lw.forces.equilibria(m), "a law drives"),
+        (
+            lambda m: lw.design.motor_check(
+                m, motor=lw.Motor(speeds=("0 rpm", "20 rpm"), torques=(9, 9))
+            ),
             "from 0 rpm to 20 rpm, but the input turns at",
         ),
     ],
-)  # fmt: skip
+)
 def test_questions_that_a_law_leaves_without_sense_say_so(ask: object, message: str) -> None:
     assert callable(ask)
     with pytest.raises(lw.InputError, match=message):
@@ -203,7 +210,7 @@ def test_questions_that_a_law_leaves_without_sense_say_so(ask: object, message: 
 def test_a_motor_check_needs_one_input() -> None:
     robot = lw.example("five-bar-robot")
     with pytest.raises(lw.InputError, match="needs one input, the mechanism has 2"):
-        robot.motor_check(stall=1, free_speed="1 rpm")
+        lw.design.motor_check(robot, stall=1, free_speed="1 rpm")
 
 
 def test_counterweights_balance_a_four_bar_that_a_law_drives() -> None:
@@ -212,5 +219,5 @@ def test_counterweights_balance_a_four_bar_that_a_law_drives() -> None:
         bar.description.inputs[0], start=0, stop=1, step=0.05, speed=None,
         law=(lw.LawSegment(law="3-4-5", over="1 s", by=200),),
     )  # fmt: skip
-    found = bar.changed(inputs=inputs).counterweights(radius=20)
+    found = lw.design.counterweights(bar.changed(inputs=inputs), radius=20)
     assert found.force[1] < 1e-12 * found.force[0]

@@ -59,7 +59,7 @@ def test_the_least_angle_is_found_where_many_rows_lie_near_a_dead_point() -> Non
     description = lw.example("jansen-leg").description
     assert isinstance(description, Draft)
     tables = {"lengths": lengths, "points": {**description.points, **pivots}}
-    leg = lw.api.Mechanism(description.with_tables(tables))
+    leg = lw.Mechanism(description.with_tables(tables))
     whole = WholeMotion.of(model_of(leg.description), leg.sweep())
     assert whole is not None
     found = whole.least_transmission(0.0)

@@ -24,9 +24,8 @@ from linkwork.core.drawing import (
     Text,
     scene_of,
 )
-from linkwork.core.drawing.annotations import LONGEST, round_up, usual_most
+from linkwork.core.drawing.annotations import LONGEST, Force, round_up, usual_most
 from linkwork.core.foundation.errors import InputError
-from linkwork.forces.results import Force
 from tests.drawing.shared_area import shared_area
 
 NAMES = ["four-bar", "jansen-leg", "slider-crank", "crank-shaper", "planetary-gear"]

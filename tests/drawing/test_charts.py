@@ -58,17 +58,17 @@ def four_bar(
     )
 
 
-_FOUND: dict[str, lw.Circuits] = {}
+_FOUND: dict[str, lw.circuits.Circuits] = {}
 
 
-def circuits_of(name: str) -> lw.Circuits:
+def circuits_of(name: str) -> lw.circuits.Circuits:
     """Circuits of a library mechanism, found once."""
     if name not in _FOUND:
         _FOUND[name] = lw.example(name).circuits()
     return _FOUND[name]
 
 
-def ray_and_line() -> lw.Circuits:
+def ray_and_line() -> lw.circuits.Circuits:
     """A pin on a line runs to infinity where the line and its arm become parallel."""
     return lw.loops(
         name="ray and line",

@@ -134,7 +134,10 @@ def test_every_limit_is_shown_besides_and_once(four_bar: Sample) -> None:
     shown = further_positions(Pose.of(four_bar.position(51), motion), motion, 7)
     limits = [(further.row, further.limit) for further in shown if further.limit is not None]
     # row 120 is row 0 a turn later; an extreme is no limit
-    assert limits == [(0, lw.LimitKind.DEAD_POINT), (40, lw.LimitKind.CHANGE_POINT)]
+    assert limits == [
+        (0, lw.core.results.LimitKind.DEAD_POINT),
+        (40, lw.core.results.LimitKind.CHANGE_POINT),
+    ]
     assert len(shown) == 9
 
 

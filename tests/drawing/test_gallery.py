@@ -9,10 +9,10 @@ import numpy as np
 import pytest
 
 import linkwork as lw
+from linkwork.app.pages.moving_scene import moving_scene
 from linkwork.core.commands.sweep import sweep_scene
 from linkwork.core.drawing import Disc, Role, Scene, SceneOptions, Text, scene_of
 from linkwork.core.drawing.labels import Obstacles
-from linkwork.core.drawing.moving_scene import moving_scene
 from linkwork.core.motion import vector_loops
 from tests.drawing.shared_area import shared_area
 from tests.thinned import thinned

@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 
 import linkwork as lw
+from linkwork.app.pages.moving_scene import moving_scene
 from linkwork.core.drawing import SceneOptions, reach_of, scene_of
-from linkwork.core.drawing.moving_scene import moving_scene
 from linkwork.core.drawing.scene import Arc, Disc, Polyline, Primitive, Role, Scene, Text, corners
 from linkwork.core.mechanism.linkage import Linkage
 from tests.described import described_as

@@ -23,7 +23,7 @@ def swept(name: str) -> lw.Motion:
 
 
 @cache
-def circuits_of(name: str) -> lw.Circuits:
+def circuits_of(name: str) -> lw.circuits.Circuits:
     return lw.example(name).circuits(certify=False)
 
 

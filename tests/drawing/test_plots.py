@@ -18,7 +18,6 @@ from matplotlib.axes import Axes
 
 import linkwork as lw
 from linkwork.core.drawing import LIGHT, render, scene_of, write
-from linkwork.core.foundation.containers import presenter
 from linkwork.core.foundation.errors import InputError, UnknownNameError
 from linkwork.writers.charts.chart import DARK_CHART, LIGHT_CHART, THEMES, ChartTheme
 from linkwork.writers.charts.matplotlib_plot import chart_figure
@@ -46,7 +45,7 @@ def swept(name: str, **options: Any) -> lw.Motion:
 
 
 @cache
-def circuits_of(name: str) -> lw.Circuits:
+def circuits_of(name: str) -> lw.circuits.Circuits:
     return lw.example(name).circuits(certify=False)
 
 
@@ -284,11 +283,6 @@ def test_an_unknown_theme_is_refused_with_those_that_exist() -> None:
     with pytest.raises(UnknownNameError) as raised:
         swept("four-bar").plot(theme="black")
     assert str(raised.value) == 'there is no theme "black" (themes: light, dark)'
-
-
-def test_a_method_without_a_registered_presenter_is_a_lookup_error() -> None:
-    with pytest.raises(LookupError, match=r"^no presenter is registered for Motion\.trace$"):
-        presenter(lw.Motion.trace)
 
 
 def test_a_motion_read_back_in_a_new_process_is_plotted(tmp_path: Path) -> None:

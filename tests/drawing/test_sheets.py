@@ -23,10 +23,10 @@ DRAWN = (
     "planetary-gear", "rapier-drive", "slider-input", "stephenson-far-crank",
 )  # fmt: skip
 
-_FOUND: dict[str, lw.Configurations] = {}
+_FOUND: dict[str, lw.circuits.Configurations] = {}
 
 
-def found_of(name: str) -> lw.Configurations:
+def found_of(name: str) -> lw.circuits.Configurations:
     """Configurations of a library mechanism at its guess's input, found once."""
     if name not in _FOUND:
         _FOUND[name] = lw.example(name).configurations()

@@ -204,7 +204,7 @@ def test_at_rest_an_engine_starts_where_the_effort_of_statics_is_exceeded() -> N
             inputs=lw.Input(slider="d", start=999.5, stop=900, step=-33, motor=motor),
         )
 
-    (stall,) = pushed(0).stalls()
+    (stall,) = lw.forces.stalls(pushed(0))
     moves, locked = stall.bracket
     # the block moves against the direction of its slide there
     effort = float(pushed(0).forces(at=moves - 0.5)["d.effort"])

@@ -361,7 +361,7 @@ def test_laws_that_do_not_fit_a_simulation_are_refused(
 
 def test_a_double_pendulum_has_four_equilibria() -> None:
     """ω² = (2 ± √2) g/l about the hanging one, with signs for bars that stand."""
-    found = lw.example("double-pendulum").equilibria()
+    found = lw.forces.equilibria(lw.example("double-pendulum"))
     places = [(each.values["upper"], each.values["lower"]) for each in found]
     signs = [(-1, -1), (-1, 1), (1, -1), (1, 1)]
     assert np.array(places) == pytest.approx(90 * np.array(signs), abs=1e-9)
@@ -381,7 +381,7 @@ def test_equilibria_of_a_five_bar_are_at_rest() -> None:
     spring = lw.Spring(name="s", between=("A", "B"), stiffness=200, free=1)
     free = [lw.Input(link="left"), lw.Input(link="right")]
     arm = _arm(1.0, "m", loads=(), springs=[spring], inputs=free)
-    stable = [each for each in arm.equilibria() if each.stable]
+    stable = [each for each in lw.forces.equilibria(arm) if each.stable]
     assert len(stable) >= 2
     for each in stable[:2]:
         at = {name: each.values[name] for name in ("left", "right")}
@@ -389,7 +389,7 @@ def test_equilibria_of_a_five_bar_are_at_rest() -> None:
         assert np.abs(motion["left.acceleration"]).max() < 1e-9
         assert motion["left"] == pytest.approx(at["left"], abs=1e-9)
     with pytest.raises(lw.InputError, match="leave it out for equilibria"):
-        _driven_cart().equilibria()
+        lw.forces.equilibria(_driven_cart())
 
 
 def test_a_motion_of_several_inputs_may_begin_at_a_stop() -> None:

@@ -130,7 +130,7 @@ def test_the_table_of_a_slider_does_not_limit_its_simulation(start: float, stop:
     machine = slider(start, stop)
     motion = machine.simulate(until=3, step=0.1)
     assert motion["d"] == pytest.approx(3.0 * np.cos(5.0 * motion["t"]), abs=1e-12)
-    assert [round(each.input, 12) for each in machine.equilibria()] == [0.0]
+    assert [round(each.input, 12) for each in lw.forces.equilibria(machine)] == [0.0]
 
 
 def test_a_slider_goes_as_far_as_its_acceleration_takes_it() -> None:
@@ -157,15 +157,15 @@ def arm(balance: float, **more: Any) -> lw.Mechanism:
 
 
 def test_an_arm_that_is_balanced_everywhere_has_one_indifferent_equilibrium() -> None:
-    (found,) = arm(1.0).equilibria()
+    (found,) = lw.forces.equilibria(arm(1.0))
     assert (found.indifferent, found.stable, found.frequency) == ("everywhere", False, 0.0)
     # a millionth of imbalance leaves two
-    assert [each.stable for each in arm(1.000001).equilibria()] == [False, True]
+    assert [each.stable for each in lw.forces.equilibria(arm(1.000001))] == [False, True]
 
 
 def test_loads_that_leave_a_stretch_free_have_an_equilibrium_on_it() -> None:
     loads = [lw.Load(link="arm", torque="-2*max(0, arm - 30) + max(0, -40 - arm)")]
-    found = arm(1.0, gravity=None, springs=(), loads=loads).equilibria()
+    found = lw.forces.equilibria(arm(1.0, gravity=None, springs=(), loads=loads))
     assert [each.indifferent for each in found] == ["near"]
     assert -40 < found[0].input < 30
 
@@ -180,7 +180,7 @@ def test_an_arm_of_two_inputs_may_be_indifferent_alone() -> None:
                 "bar": lw.Mass(mass=2, shape="rod")},
         inputs=[lw.Input(link="arm"), lw.Input(link="bar")],
     )  # fmt: skip
-    found = with_bar.equilibria()
+    found = lw.forces.equilibria(with_bar)
     assert [round(each.values["bar"], 6) for each in found] == [-90, 90]
     assert {each.indifferent for each in found} == {"near"}
     # a rod about its end: ω² = 3 g / (2 l)
@@ -205,4 +205,4 @@ def test_the_mechanical_advantage_of_a_simulation_is_that_of_its_positions() -> 
 def test_a_policy_that_is_refused_is_not_offered() -> None:
     assert "[stop|straight]" in CliRunner().invoke(linkwork, ["simulate", "--help"]).output
     with pytest.raises(lw.InputError, match="goes straight on or stops"):
-        arm(1.0).equilibria(change_points="turn")
+        lw.forces.equilibria(arm(1.0), change_points="turn")

@@ -142,7 +142,7 @@ def test_a_damped_mass_on_a_spring_moves_by_its_closed_form() -> None:
     expected = 2 + np.exp(-decay * t) * (np.cos(w * t) + decay / w * np.sin(w * t))
     assert motion["d"] == pytest.approx(expected, abs=1e-12)
     # the spring is as long on the other side of S
-    rests = lw.linkage(**SLIDER, springs=[spring]).equilibria()
+    rests = lw.forces.equilibria(lw.linkage(**SLIDER, springs=[spring]))
     assert [rest.input for rest in rests] == pytest.approx([-2, 2], abs=1e-12)
     for rest in rests:
         assert rest.stable
@@ -541,7 +541,7 @@ def test_equilibria_at_a_stop_and_on_a_stretch_do_not_hang_on_the_start(start: f
 
     def places(force: str) -> list[tuple[float, bool, str]]:
         load = lw.Load(point="B", force=(force, 0))
-        found = lw.linkage(**machine, stops=[stop], loads=[load]).equilibria()
+        found = lw.forces.equilibria(lw.linkage(**machine, stops=[stop], loads=[load]))
         return [(round(each.input, 9), each.stable, each.indifferent) for each in found]
 
     assert places("-d") == [(0.0, True, "")]

@@ -139,14 +139,14 @@ def test_a_pin_slides_on_the_first_link_of_its_row() -> None:
 
 
 def test_links_of_pmks_have_inputs_speeds_and_slides() -> None:
-    made = lw.example("slider-crank-engine").exported("pmks")
-    found = lw.imported(made.text.strip())
+    made = lw.readers.exported(lw.example("slider-crank-engine"), "pmks")
+    found = lw.readers.imported(made.text.strip())
     assert found.carried["slots"] == 1
     assert found.description.inputs[0].speed == "10 rpm"
     with pytest.raises(lw.MechanismFileError, match="its check sum is wrong"):
-        lw.imported(made.text.strip()[:-1] + "!")
+        lw.readers.imported(made.text.strip()[:-1] + "!")
     code = made.text.strip().partition("?")[2]
-    assert lw.imported(f"https://app.pmksplus.com/?{code}*abc123").carried == found.carried
+    assert lw.readers.imported(f"https://app.pmksplus.com/?{code}*abc123").carried == found.carried
 
 
 def test_names_are_kept_where_formulas_can_use_them() -> None:
@@ -232,7 +232,7 @@ def test_wrong_files_are_refused_with_reason_and_place(name: str) -> None:
 def test_a_missing_file_names_the_files_of_its_kind(tmp_path: Path) -> None:
     (tmp_path / "sketch.dxf").write_text("0")
     with pytest.raises(lw.MechanismFileError) as caught:
-        lw.imported(tmp_path / "sketsh.dxf")
+        lw.readers.imported(tmp_path / "sketsh.dxf")
     assert "there is no such file (DXF files there: sketch.dxf)" in str(caught.value)
 
 
@@ -243,9 +243,9 @@ def test_every_format_has_a_sample() -> None:
 def test_a_saved_import_reads_back(tmp_path: Path) -> None:
     file = tmp_path / "bar.linkage2"
     file.write_bytes(SAMPLES["bar.linkage2"])
-    found = lw.imported(file)
+    found = lw.readers.imported(file)
     found.save(tmp_path / "bar.toml")
     assert lw.load(tmp_path / "bar.toml").description == found.description
     assert json.dumps(found.carried)
     with pytest.raises(lw.UnknownNameError, match='there is no format "linkage" \\(formats: '):
-        lw.imported(file, "linkage")
+        lw.readers.imported(file, "linkage")

@@ -47,7 +47,7 @@ def test_a_sample_of_the_library_comes_back(form: str) -> None:
 
 
 def test_a_wrong_coordinate_would_be_seen() -> None:
-    right = lw.example("four-bar").exported("pyslvs", at=60).text
+    right = lw.readers.exported(lw.example("four-bar"), "pyslvs", at=60).text
     wrong = right.replace("P[100.0, 0.0]", "P[100.1, 0.0]")
     assert wrong != right
     at = [read_foreign(text.encode(), "x.pyslvs").linkage.points["P3"] for text in (right, wrong)]
@@ -57,8 +57,8 @@ def test_a_wrong_coordinate_would_be_seen() -> None:
 def test_an_open_chain_comes_back_from_urdf(tmp_path: Path) -> None:
     path = tmp_path / "arm.urdf"
     pendulum = lw.example("pendulum")
-    pendulum.to_robot(path)
-    found = lw.imported(path)
+    pendulum.write(path)
+    found = lw.readers.imported(path)
     motion, ours = found.mechanism.sweep(), pendulum.sweep()
     end = next(p for p in found.description.points if p not in found.description.links["ground"])
     size = np.abs(motion.place(end).v)
@@ -69,17 +69,17 @@ def test_an_open_chain_comes_back_from_urdf(tmp_path: Path) -> None:
 
 def test_formats_that_cannot_carry_a_part_refuse_it() -> None:
     with pytest.raises(lw.InputError, match=r'"mesh" \(gear pair\) has no equivalent'):
-        lw.example("geared-five-bar").exported("pyslvs")
+        lw.readers.exported(lw.example("geared-five-bar"), "pyslvs")
     with pytest.raises(lw.InputError, match="slides on a moving link"):
-        lw.example("whitworth").exported("pylinkage")
+        lw.readers.exported(lw.example("whitworth"), "pylinkage")
     with pytest.raises(lw.InputError, match="is given by equations"):
-        lw.example("rapier-drive").exported("pmks")
+        lw.readers.exported(lw.example("rapier-drive"), "pmks")
     with pytest.raises(lw.InputError, match=r'"dxf" is not written \(formats: '):
-        lw.example("four-bar").exported("dxf")
+        lw.readers.exported(lw.example("four-bar"), "dxf")
 
 
 def test_what_a_format_leaves_out_is_listed() -> None:
-    made = lw.example("four-bar").exported("pyslvs")
+    made = lw.readers.exported(lw.example("four-bar"), "pyslvs")
     assert [str(left) for left in made.left_out] == [
         '"crank": range or law of the input',
         '"crank": the input: an expression does not state it',

@@ -47,7 +47,7 @@ def test_rows_without_a_position_are_counted(tmp_path: Path) -> None:
     mechanism = read_example("parallelogram")
     motion = mechanism.sweep(start=0, stop=360, step=30)
     lost = np.count_nonzero(~motion.found)
-    stack = mechanism.to_plates(tmp_path / "x.svg", motion)
+    stack = mechanism.write(tmp_path / "x.svg", motion=motion, kind="plates")
     assert 0 < lost < len(motion)
     assert f"{lost} of {len(motion)} rows of the table have no position: left out" in stack.notes
 
@@ -181,7 +181,7 @@ def test_a_bridge_holds_pins_that_cranks_would_run_into() -> None:
 def test_columns_that_are_hit_between_the_rows_move_outwards() -> None:
     mechanism = read_example("drag-link")
     motion = mechanism.sweep(start=254.4, stop=334.4, step=80)
-    options = lw.PlateOptions(gap=0.0, width=20.0)
+    options = lw.writers.PlateOptions(gap=0.0, width=20.0)
     stack = stack_of(mechanism.model, motion, options)
     assert sum(pin.name.startswith("column") for pin in stack.pins) == 4
     assert stack.proved
@@ -270,7 +270,7 @@ def test_each_assembled_plate_is_a_closed_solid_of_its_file(tmp_path: Path) -> N
     stack, _ = made(mechanism)
     wanted = {p.name: stack.sizes.thickness * p.plate.area for p in assembled(stack)}
     for suffix in (".stl", ".3mf"):
-        mechanism.to_plates(tmp_path / f"plates{suffix}")
+        mechanism.write(tmp_path / f"plates{suffix}", kind="plates")
         solids = trimesh.load_scene(tmp_path / f"plates{suffix}").geometry
         assert len(solids) == 4, suffix
         assert all(solid.is_volume for solid in solids.values()), suffix
@@ -282,9 +282,9 @@ def test_each_assembled_plate_is_a_closed_solid_of_its_file(tmp_path: Path) -> N
 
 def test_files_are_read_by_other_programs(tmp_path: Path) -> None:
     mechanism = coarse(read_example("four-bar"), 36)
-    options = lw.PlateOptions(labels=True)
+    options = lw.writers.PlateOptions(labels=True)
     for suffix in _SUFFIXES:
-        mechanism.to_plates(tmp_path / f"plates{suffix}", layout=True, options=options)
+        mechanism.write(tmp_path / f"plates{suffix}", layout=True, options=options, kind="plates")
     trimesh = import_module("trimesh")
     solids = trimesh.load(tmp_path / "plates.stl").split()
     assert len(solids) == 4
@@ -308,7 +308,7 @@ def test_files_are_read_by_other_programs(tmp_path: Path) -> None:
 
 def test_a_suffix_without_a_format_is_refused(tmp_path: Path) -> None:
     with pytest.raises(InputError, match=r"the suffix of plates is one of \.dxf, \.svg, \.stl"):
-        read_example("four-bar").to_plates(tmp_path / "plates.obj")
+        read_example("four-bar").write(tmp_path / "plates.obj", kind="plates")
 
 
 @pytest.mark.parametrize(
@@ -406,7 +406,7 @@ def test_step_keeps_arcs(tmp_path: Path) -> None:
 def test_holes_of_welded_links_are_in_one_plate() -> None:
     mechanism = read_example("boxer-engine")
     motion = mechanism.sweep()
-    made_of = Construction.of(mechanism.model, motion, lw.PlateOptions(), 1.0)
+    made_of = Construction.of(mechanism.model, motion, lw.writers.PlateOptions(), 1.0)
     throw = next(plate for plate in made_of.plates if plate.name == "throw1")
     assert {own.name for own in throw.openings} >= {"O", "A1", "A2"}
     assert "throw2" not in {plate.name for plate in made_of.plates}

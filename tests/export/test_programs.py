@@ -48,7 +48,7 @@ step = 30
 
 def _differences(mechanism: lw.Mechanism, file: Path) -> dict[str, float]:
     motion = mechanism.sweep()
-    mechanism.to_code(file, motion)
+    mechanism.write(file, motion=motion)
     columns, statuses = columns_of(file)
     expected = motion.found[motion.asked]
     assert [status == "found" for status in statuses] == expected.tolist()
@@ -90,7 +90,7 @@ def test_names_of_the_file_may_be_words_of_the_language(suffix: str, tmp_path: P
 def test_a_program_solves_the_mechanism_with_another_dimension(tmp_path: Path) -> None:
     file = tmp_path / "four_bar.py"
     bar = read_example("four-bar")
-    bar.to_code(file)
+    bar.write(file)
     text = file.read_text("utf-8")
     assert text.count("O2_A = 40.0\n") == 1
     file.write_text(text.replace("O2_A = 40.0\n", "O2_A = 42.0\n"), "utf-8")
@@ -101,7 +101,7 @@ def test_a_program_solves_the_mechanism_with_another_dimension(tmp_path: Path) -
 
 def test_a_position_is_computed_at_any_input(tmp_path: Path) -> None:
     file = tmp_path / "four_bar.py"
-    read_example("four-bar").to_code(file)
+    read_example("four-bar").write(file)
     namespace: dict[str, object] = {"__name__": "four_bar"}
     exec(compile(file.read_text("utf-8"), str(file), "exec"), namespace)  # our own program
     position = namespace["position"]
@@ -113,7 +113,7 @@ def test_a_position_is_computed_at_any_input(tmp_path: Path) -> None:
 
 def test_structured_text_has_every_column_as_an_output(tmp_path: Path) -> None:
     file = tmp_path / "four_bar.st"
-    read_example("four-bar").to_code(file)
+    read_example("four-bar").write(file)
     text = file.read_text("utf-8")
     assert "FUNCTION_BLOCK four_bar\n" in text
     for name in ("coupler", "rocker", "B_x", "mu", "coupler_d1", "B_y_d2"):
@@ -123,13 +123,13 @@ def test_structured_text_has_every_column_as_an_output(tmp_path: Path) -> None:
 
 def test_what_has_no_formulas_is_refused_with_the_reason(tmp_path: Path) -> None:
     with pytest.raises(lw.InputError) as refused:
-        read_example("cam-roller-follower").to_code(tmp_path / "cam.c")
+        read_example("cam-roller-follower").write(tmp_path / "cam.c")
     assert str(refused.value) == (
         'no program for Disc cam with roller follower: "rise" is a motion law or a curve, given '
         "piece by piece"
     )
     with pytest.raises(lw.InputError) as refused:
-        read_example("four-bar").to_code(tmp_path / "bar.java")
+        read_example("four-bar").write(tmp_path / "bar.java")
     assert "the suffix of a program is one of .py (Python), .m (Octave and MATLAB)" in str(
         refused.value
     )
@@ -139,14 +139,14 @@ def test_what_has_no_formulas_is_refused_with_the_reason(tmp_path: Path) -> None
 def test_every_place_of_a_template_is_filled(tmp_path: Path) -> None:
     for suffix in (".py", ".js", ".c", ".m", ".st"):
         file = tmp_path / f"solver{suffix}"
-        read_example("dixon-one").to_code(file)
+        read_example("dixon-one").write(file)
         text = file.read_text("utf-8")
         assert "@{" not in text
         assert np.char.count(text, "A2").item() > 0
 
 
 def test_octave_assigns_no_result_that_nobody_takes(tmp_path: Path) -> None:
-    read_example("four-bar").to_code(tmp_path / "bar.m")
+    read_example("four-bar").write(tmp_path / "bar.m")
     body = (tmp_path / "bar.m").read_text("utf-8").partition("function p = numbers")[0]
     # an assigned first output of a plain call is printed as "ans = [](0x0)" behind the table
     table = body.rpartition("return\n  end\n")[2]

@@ -17,7 +17,7 @@ import pytest
 from click.testing import CliRunner
 
 import linkwork as lw
-from linkwork.api import example_text
+from linkwork import example_text
 from linkwork.core.commands.main import linkwork
 from linkwork.core.results.listing.motion_listing import Column
 from linkwork.writers import Findings, template_of
@@ -36,6 +36,7 @@ from linkwork.writers.report.document import (
 )
 from linkwork.writers.report.docx import docx_bytes
 from linkwork.writers.report.findings import SECTIONS, Template
+from linkwork.writers.report.gathering import findings
 from linkwork.writers.report.html import html_bytes
 from linkwork.writers.report.pdf import pdf_bytes, typst_text
 from linkwork.writers.report.report import WrittenReport, document_of, report_of
@@ -90,7 +91,7 @@ def written(tmp_path_factory: pytest.TempPathFactory) -> dict[str, Path]:
     files = {}
     for suffix in ("html", "pdf", "docx", "md"):
         files[suffix] = folder / f"bar.{suffix}"
-        mechanism.to_report(files[suffix], template=folder / "short.toml")
+        mechanism.write(files[suffix], template=folder / "short.toml", kind="report")
     return files
 
 
@@ -181,7 +182,7 @@ def test_tables_that_fit_stay_on_one_page() -> None:
 
 def test_two_runs_write_the_same_bytes(written: dict[str, Path]) -> None:
     folder, mechanism = written["md"].parent, coarse(read_example("four-bar"), 4)
-    files = mechanism.to_report(folder / "again.md", template=folder / "short.toml")
+    files = mechanism.write(folder / "again.md", template=folder / "short.toml", kind="report")
     assert files == (folder / "again.md", folder / "again-pictures/figure-1.png")
     again = files[0].read_bytes().replace(b"again-pictures", b"bar-pictures")
     assert again == written["md"].read_bytes()
@@ -349,7 +350,7 @@ def test_tolerances_are_those_of_the_results() -> None:
     template = Template(sections=("tolerances",), tolerances_of=("d",))
     found = mechanism.findings(template, 60, None, lambda part: None)
     (contribution,) = _tables(document_of(found, template)).values()
-    share = mechanism.tolerance("d", at=60).contributions[0]
+    share = lw.design.tolerance(mechanism, "d", at=60).contributions[0]
     assert contribution.columns[0].cells == [share.name]
     sensitivity = contribution.columns[2].cells[0].partition(" ")[0]
     assert float(sensitivity) == pytest.approx(share.sensitivity, rel=1e-5)  # six digits
@@ -376,7 +377,7 @@ def test_a_template_that_does_not_fit_is_refused_before_any_computation(
     bar = coarse(read_example("four-bar"), 4).changed(tolerances={"A B": 0.05})
     monkeypatch.setattr(lw.Mechanism, "findings", lambda *_: pytest.fail("it computes"))
     with pytest.raises(lw.InputError, match=r'no "rokcer"|every = 37: the motion has no two rows'):
-        bar.to_report(tmp_path / "bar.html", template=tmp_path / "t.toml")
+        bar.write(tmp_path / "bar.html", template=tmp_path / "t.toml", kind="report")
 
 
 def test_purpose_and_source_are_shown_as_they_are_written() -> None:
@@ -388,7 +389,7 @@ def test_purpose_and_source_are_shown_as_they_are_written() -> None:
 def test_the_file_is_shown_as_it_is_written() -> None:
     text = "# mine\n" + example_text("four-bar")
     template = Template(sections=("file",))
-    found = lw.loads(text).findings(template, None, None, lambda part: None)
+    found = findings(lw.loads(text), template, None, None, lambda part: None)
     assert _section(document_of(found, template), "Mechanism file")[-1] == Listing(text=text)
 
 
@@ -405,7 +406,7 @@ def test_a_mechanism_without_input_has_its_position() -> None:
         links={"ground": ["A", "B"], "left": ["A", "C"], "right": ["B", "C"]},
     )
     template = Template(sections=("motion", "plots", "proof"))
-    document = document_of(truss.findings(template, None, None, lambda part: None), template)
+    document = document_of(findings(truss, template, None, None, lambda part: None), template)
     names, values = _tables(document)["Points"].columns
     assert float(values.cells[list(names.cells).index("C.x")]) == 20
     assert _facts(document, "Sections left out")["Plots"] == "the mechanism has no input"
@@ -490,15 +491,15 @@ def test_unknown_templates_formats_and_packages_are_refused(
 ) -> None:
     bar = coarse(read_example("four-bar"), 2)
     with pytest.raises(lw.InputError, match=r'no template "enginer" \(templates: engineer'):
-        bar.to_report(tmp_path / "x.html", template="enginer")
+        bar.write(tmp_path / "x.html", template="enginer", kind="report")
     with pytest.raises(lw.InputError, match=r"a report is one of \.html, \.pdf, \.docx, \.md"):
-        bar.to_report(tmp_path / "x.odt")
+        bar.write(tmp_path / "x.odt", kind="report")
     (tmp_path / "short.toml").write_text('sections = ["versions"]')
     monkeypatch.setattr(lw.Mechanism, "findings", lambda *_: pytest.fail("it computes"))
     for suffix, package in (("pdf", "typst"), ("docx", "docx")):
         monkeypatch.setitem(sys.modules, package, None)
         with pytest.raises(lw.MissingPackageError, match=r'pip install "linkwork\[report\]"'):
-            bar.to_report(tmp_path / f"x.{suffix}", template=tmp_path / "short.toml")
+            bar.write(tmp_path / f"x.{suffix}", template=tmp_path / "short.toml", kind="report")
         assert not (tmp_path / f"x.{suffix}").exists()
 
 
@@ -536,7 +537,7 @@ def test_every_mechanism_of_the_library_has_a_report(name: str, tmp_path: Path) 
     (tmp_path / "own.toml").write_text(f"sections = [{sections}]")
     mechanism = coarse(read_example(name), 6)
     for suffix in ("html", "md"):
-        mechanism.to_report(tmp_path / f"x.{suffix}", template=tmp_path / "own.toml")
+        mechanism.write(tmp_path / f"x.{suffix}", template=tmp_path / "own.toml", kind="report")
     page = _Page()
     page.feed((tmp_path / "x.html").read_text("utf-8"))
     assert not page.open
@@ -548,7 +549,7 @@ def test_every_mechanism_of_the_library_has_a_report(name: str, tmp_path: Path) 
 def test_reports_leave_out_what_a_question_hides(tmp_path: Path) -> None:
     ask = lw.Question(text="How far?", answer=52.75, tolerance=1, unit="deg")
     bar = coarse(lw.example("four-bar"), 36).changed(questions=[ask])
-    (file,) = bar.to_report(tmp_path / "bar.html")
+    (file,) = bar.write(tmp_path / "bar.html", kind="report")
     text = file.read_text("utf-8")
     left_out = text.count("a question of the file hides it")
     kept = re.findall(r"<h2[^>]*>(.*?)</h2>", text)
@@ -557,5 +558,5 @@ def test_reports_leave_out_what_a_question_hides(tmp_path: Path) -> None:
     assert "Mechanism file" not in kept
     assert "52.75" not in text
     assert "The mechanism crank" not in text
-    bar.changed(questions=()).to_report(tmp_path / "bar.html")
+    bar.changed(questions=()).write(tmp_path / "bar.html", kind="report")
     assert "a question of the file" not in file.read_text("utf-8")

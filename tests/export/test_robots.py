@@ -83,7 +83,7 @@ def test_files_have_all_bodies_and_joints(tmp_path: Path) -> None:
     bodies, joints = len(robot.tree.graph.bodies) - 1, len(robot.tree.joints)
     roots = {}
     for suffix in ("mjcf", "urdf", "sdf"):
-        mechanism.to_robot(tmp_path / f"x.{suffix}")
+        mechanism.write(tmp_path / f"x.{suffix}")
         roots[suffix] = Tree.parse(tmp_path / f"x.{suffix}").getroot()
     closing = len(robot.tree.closing)
     assert bodies == joints
@@ -99,7 +99,7 @@ def test_a_urdf_ends_at_the_dead_points(tmp_path: Path) -> None:
     mechanism = coarse(lw.example("four-bar").changed(lengths=lengths), 72)
     motion, start = mechanism.sweep(), mechanism.solve()
     from_start = np.radians(motion.limits[0].input - start.input["crank"])
-    mechanism.to_robot(tmp_path / "x.urdf", motion=motion)
+    mechanism.write(tmp_path / "x.urdf", motion=motion)
     root = Tree.parse(tmp_path / "x.urdf").getroot()
     limit = next(j for j in root.findall("joint") if j.find("mimic") is None).find("limit")
     assert limit is not None
@@ -189,7 +189,7 @@ def test_a_start_outside_of_the_table_is_said() -> None:
 )
 def test_refusals_say_why(name: str, file: str, reason: str, tmp_path: Path) -> None:
     with pytest.raises(lw.InputError) as raised:
-        read_example(name).to_robot(tmp_path / file)
+        read_example(name).write(tmp_path / file)
     assert reason in str(raised.value)
     assert not (tmp_path / file).exists()
 
@@ -200,13 +200,13 @@ def test_a_link_with_the_name_of_the_ground_of_simulators_is_refused(
 ) -> None:
     mechanism = lw.loads(_DEAD_ROWS.replace("coupler =", "world ="))
     with pytest.raises(lw.InputError, match='link "world" has the name of the ground'):
-        mechanism.to_robot(tmp_path / f"x.{suffix}")
+        mechanism.write(tmp_path / f"x.{suffix}")
 
 
 @pytest.mark.parametrize("name", ["", "world", "__model__", "Crank::rocker"])
 def test_titles_that_sdf_does_not_allow_are_replaced_and_noted(name: str, tmp_path: Path) -> None:
     mechanism = lw.loads(_DEAD_ROWS.replace("Dead rows", name))
-    mechanism.to_robot(tmp_path / "x.sdf")
+    mechanism.write(tmp_path / "x.sdf")
     text = (tmp_path / "x.sdf").read_text()
     assert f'The model is named "mechanism": SDF does not allow "{name}".' in text
     model = Tree.fromstring(text).find("model")
@@ -217,8 +217,8 @@ def test_titles_that_sdf_does_not_allow_are_replaced_and_noted(name: str, tmp_pa
 def test_a_link_with_a_name_that_sdf_reserves_is_refused(tmp_path: Path) -> None:
     mechanism = lw.loads(_DEAD_ROWS.replace("coupler =", "__coupler__ ="))
     with pytest.raises(lw.InputError, match='link "__coupler__" has a name that SDF reserves'):
-        mechanism.to_robot(tmp_path / "x.sdf")
-    mechanism.to_robot(tmp_path / "x.mjcf")
+        mechanism.write(tmp_path / "x.sdf")
+    mechanism.write(tmp_path / "x.mjcf")
 
 
 def test_points_are_frames_of_an_sdf_model() -> None:
@@ -272,7 +272,7 @@ def test_every_input_has_an_actuator_of_its_joint(tmp_path: Path) -> None:
     robot = read_example("five-bar-robot")
     texts = {}
     for suffix in (".mjcf", ".sdf", ".urdf"):
-        robot.to_robot(tmp_path / f"robot{suffix}")
+        robot.write(tmp_path / f"robot{suffix}")
         texts[suffix] = (tmp_path / f"robot{suffix}").read_text("utf-8")
     motors = Tree.fromstring(texts[".mjcf"]).iterfind("actuator/motor")
     assert [(own.get("name"), own.get("joint")) for own in motors] == [
@@ -281,7 +281,7 @@ def test_every_input_has_an_actuator_of_its_joint(tmp_path: Path) -> None:
     assert "whose motors a model cannot give: O1:left, O2:right." in texts[".sdf"]
     assert "in step with it as in the table: O2:right." in texts[".urdf"]
     bar = coarse(read_example("four-bar"), 36).driven_by(link="coupler")
-    bar.to_robot(tmp_path / "bar.mjcf", at=20)
+    bar.write(tmp_path / "bar.mjcf", at=20)
     text = (tmp_path / "bar.mjcf").read_text("utf-8")
     assert "Not driven, between bodies without a common joint: coupler." in text
     assert "<motor" not in text

@@ -33,7 +33,7 @@ _ROUNDING = 1e-13  # of a formula with ten operations at most, some digits for d
 
 def written(tmp_path: Path, mechanism: Any, motion: Any) -> Spreadsheet:
     path = tmp_path / "cycle.xlsx"
-    mechanism.to_excel(path, motion)
+    mechanism.write(path, motion=motion)
     return Spreadsheet(path)
 
 
@@ -222,7 +222,7 @@ def test_rows_beyond_a_dead_point_say_so_and_the_next_starts_anew(tmp_path: Path
         )  # fmt: skip
         assert isinstance(shown, float) == there
     first = int(np.flatnonzero(~found)[-1]) + 1
-    told = mechanism.to_excel(tmp_path / "again.xlsx", motion)
+    told = mechanism.write(tmp_path / "again.xlsx", motion=motion)
     assert told[:2] == (
         f"rows without a position, with Linkwork's reason in their status: {int((~found).sum())}",
         "rows that start from estimates of their own, yellow cells of Newton: 1",
@@ -244,7 +244,7 @@ def test_limits_and_further_branches_stand_with_linkworks_values_only(tmp_path: 
 
 def test_a_cams_law_is_told_to_be_values_only(tmp_path: Path) -> None:
     mechanism = lw.example("cam-roller-follower")
-    told = mechanism.to_excel(tmp_path / "cam.xlsx", mechanism.sweep(step=30, certify=False))
+    told = mechanism.write(tmp_path / "cam.xlsx", motion=mechanism.sweep(step=30, certify=False))
     assert told[0] == (
         's: "rise" is a motion law or a curve, given piece by piece; '
         "the column contains Linkwork's values"
@@ -258,7 +258,7 @@ def test_a_side_across_an_angle_has_a_formula(tmp_path: Path) -> None:
     motion = mechanism.sweep(step=6, certify=False)
     sheet = written(tmp_path, mechanism, motion)
     check_rows(sheet, motion)
-    assert mechanism.to_excel(tmp_path / "again.xlsx", motion) == ()
+    assert mechanism.write(tmp_path / "again.xlsx", motion=motion) == ()
 
 
 def _with_four_points(lengths: dict[str, float], angles: dict[str, float]) -> lw.Mechanism:
@@ -280,7 +280,7 @@ def test_a_shape_that_can_be_placed_from_some_length_has_formulas(tmp_path: Path
     mechanism = _with_four_points({"A C": 50, "B D": 50, "C D": 100}, {"A C D": 100})
     motion = mechanism.sweep(step=30, certify=False)
     check_rows(written(tmp_path, mechanism, motion), motion)
-    assert mechanism.to_excel(tmp_path / "again.xlsx", motion) == ()
+    assert mechanism.write(tmp_path / "again.xlsx", motion=motion) == ()
 
 
 @pytest.mark.parametrize(
@@ -299,7 +299,7 @@ def test_a_shape_without_a_formula_keeps_its_numbers(
     motion = mechanism.sweep(step=30, certify=False)
     sheet = written(tmp_path, mechanism, motion)
     check_rows(sheet, motion)
-    (told,) = mechanism.to_excel(tmp_path / "again.xlsx", motion)
+    (told,) = mechanism.write(tmp_path / "again.xlsx", motion=motion)
     assert told.endswith(
         f"{', '.join([*lengths, *angles])}: no formula connects these with the equations; "
         "they keep the values of the file"
@@ -311,12 +311,12 @@ def test_another_mechanisms_motion_is_refused(tmp_path: Path) -> None:
     with pytest.raises(
         InputError, match='belongs to "Offset slider-crank", not to "Four-bar linkage'
     ):
-        lw.example("four-bar").to_excel(tmp_path / "x.xlsx", motion)
+        lw.example("four-bar").write(tmp_path / "x.xlsx", motion=motion)
 
 
 def test_another_kind_of_file_is_refused(tmp_path: Path) -> None:
     with pytest.raises(InputError, match=r"a workbook needs the suffix \.xlsx"):
-        lw.example("four-bar").to_excel(tmp_path / "x.xls")
+        lw.example("four-bar").write(tmp_path / "x.xls")
 
 
 def test_without_xlsxwriter_the_install_command_is_told(
@@ -325,4 +325,4 @@ def test_without_xlsxwriter_the_install_command_is_told(
     monkeypatch.setitem(sys.modules, "xlsxwriter", None)
     bar = lw.example("four-bar")
     with pytest.raises(MissingPackageError, match=r'pip install "linkwork\[tables\]"'):
-        bar.to_excel(tmp_path / "x.xlsx", bar.sweep(step=90, certify=False))
+        bar.write(tmp_path / "x.xlsx", motion=bar.sweep(step=90, certify=False))

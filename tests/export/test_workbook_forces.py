@@ -21,7 +21,7 @@ _NEAR = 1e-9  # relative to the largest value: rows solved by other iterations
 
 def written(tmp_path: Path, mechanism: Any) -> Spreadsheet:
     path = tmp_path / "forces.xlsx"
-    mechanism.to_excel(path, mechanism.sweep(certify=False))
+    mechanism.write(path, motion=mechanism.sweep(certify=False))
     return Spreadsheet(path)
 
 
@@ -140,7 +140,7 @@ def test_each_of_several_inputs_follows_a_changed_mass(tmp_path: Path) -> None:
 def test_a_mechanism_whose_forces_have_no_cells_says_so(tmp_path: Path) -> None:
     cam = coarse(loaded(lw.example("eccentric-cam")), 3)
     path = tmp_path / "forces.xlsx"
-    cam.to_excel(path, cam.sweep(certify=False))
+    cam.write(path, motion=cam.sweep(certify=False))
     sheet = Spreadsheet(path)
     assert "Forces" not in sheet.book.sheetnames
     texts = [str(cell.value) for row in sheet.book["About"].iter_rows() for cell in row]

@@ -59,7 +59,7 @@ def test_the_functions_are_those_of_the_specification() -> None:
 )  # fmt: skip
 def test_every_formula_is_one_of_the_file_format(name: str, tmp_path: Path) -> None:
     mechanism = coarse(lw.example(name), 6)
-    mechanism.to_excel(tmp_path / "cycle.xlsx", mechanism.sweep(certify=False))
+    mechanism.write(tmp_path / "cycle.xlsx", motion=mechanism.sweep(certify=False))
     found = formulas_of(tmp_path / "cycle.xlsx")
     assert len(found) > 20
     for formula in found:
@@ -79,7 +79,7 @@ def test_a_formula_too_long_for_a_cell_is_values_only(tmp_path: Path) -> None:
         f'format = 1\nname = "tower"\n[equations]\nF = "{power} - u = 0"\n'
         '[guess]\nx = 0.01\nu = 1.01\n[input]\nvariable = "u"\nfrom = 1.01\nto = 1.1\nstep = 0.01\n'
     )
-    told = mechanism.to_excel(tmp_path / "tower.xlsx", mechanism.sweep())
+    told = mechanism.write(tmp_path / "tower.xlsx", motion=mechanism.sweep())
     assert told == ("x: its formula is too long; the column contains Linkwork's values",)
     for formula in formulas_of(tmp_path / "tower.xlsx"):
         check_formula(formula)
@@ -90,7 +90,7 @@ def test_names_that_look_like_formulas_are_texts(tmp_path: Path) -> None:
         'format = 1\nname = "=1+1"\nsource = "=HYPERLINK(1)"\n[equations]\nF = "x - u = 0"\n'
         '[guess]\nx = 1\nu = 1\n[input]\nvariable = "u"\nfrom = 1\nto = 2\nstep = 1\n'
     )
-    mechanism.to_excel(tmp_path / "x.xlsx", mechanism.sweep())
+    mechanism.write(tmp_path / "x.xlsx", motion=mechanism.sweep())
     about = openpyxl.load_workbook(tmp_path / "x.xlsx")["About"]
     assert (about["A1"].value, about["A1"].data_type) == ("=1+1", "s")
     assert about["B4"].data_type == "s"

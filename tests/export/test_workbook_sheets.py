@@ -20,7 +20,7 @@ from linkwork.writers.formulas.traced import traced
 
 def opened(tmp_path: Path, mechanism: Any, **asked: Any) -> Any:
     path = tmp_path / "cycle.xlsx"
-    mechanism.to_excel(path, mechanism.sweep(certify=False, **asked))
+    mechanism.write(path, motion=mechanism.sweep(certify=False, **asked))
     return openpyxl.load_workbook(path)
 
 
@@ -127,7 +127,7 @@ def test_too_many_cells_are_refused(tmp_path: Path) -> None:
         "2000000): take a larger step, or write CSV"
     )
     with pytest.raises(InputError, match=f"^{re.escape(message)}$"):
-        mechanism.to_excel(tmp_path / "x.xlsx", motion)
+        mechanism.write(tmp_path / "x.xlsx", motion=motion)
     assert not (tmp_path / "x.xlsx").exists()
 
 
@@ -140,7 +140,7 @@ def test_no_text_of_a_file_becomes_a_formula_a_reference_or_a_link(
     mechanism = lw.example("slider-crank").changed(
         name=hostile, length=hostile, purpose=hostile, source=hostile, family=hostile
     )
-    mechanism.to_excel(tmp_path / "cycle.xlsx", mechanism.sweep(step=90, certify=False))
+    mechanism.write(tmp_path / "cycle.xlsx", motion=mechanism.sweep(step=90, certify=False))
     titles = 0
     with zipfile.ZipFile(tmp_path / "cycle.xlsx") as parts:
         for name in parts.namelist():

@@ -14,7 +14,7 @@ from tests.oracles.spreadsheet import Spreadsheet
 
 def written(tmp_path: Path, mechanism: Any, **asked: Any) -> Spreadsheet:
     path = tmp_path / "cycle.xlsx"
-    mechanism.to_excel(path, mechanism.sweep(**asked))
+    mechanism.write(path, motion=mechanism.sweep(**asked))
     return Spreadsheet(path)
 
 

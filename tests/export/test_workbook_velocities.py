@@ -19,7 +19,7 @@ _NEAR = 1e-9  # relative, of the largest value: both sides divide by the same Ja
 
 def written(tmp_path: Path, mechanism: Any, motion: Any) -> Spreadsheet:
     path = tmp_path / "cycle.xlsx"
-    mechanism.to_excel(path, motion)
+    mechanism.write(path, motion=motion)
     return Spreadsheet(path)
 
 

@@ -12,10 +12,10 @@ import pytest
 from click.testing import CliRunner
 
 import linkwork as lw
+from linkwork.circuits.failure import failing, remedies
+from linkwork.circuits.failure.reach import Elsewhere
+from linkwork.circuits.failure.remedies import ChangeableLength, model_with
 from linkwork.core.commands.main import linkwork
-from linkwork.core.motion.failure import failing, remedies
-from linkwork.core.motion.failure.reach import Elsewhere
-from linkwork.core.motion.failure.remedies import ChangeableLength, model_with
 from linkwork.core.motion.model import Model
 from tests.failures.test_positions_that_do_not_exist import four_bar
 from tests.thinned import thinned
@@ -23,7 +23,7 @@ from tests.thinned import thinned
 EXACT = 1e-11  # relative: what closed form and fold differ by is rounding
 
 
-def failure_of(position: lw.Position) -> lw.Failure:
+def failure_of(position: lw.Position) -> lw.core.results.Failure:
     assert position.failure is not None
     return position.failure
 

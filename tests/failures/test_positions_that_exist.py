@@ -9,8 +9,8 @@ import numpy as np
 import pytest
 
 import linkwork as lw
-from linkwork.core.motion.failure.reach import block_positions, positions_elsewhere
-from linkwork.core.motion.failure.remedies import dyad_of
+from linkwork.circuits.failure.reach import block_positions, positions_elsewhere
+from linkwork.circuits.failure.remedies import dyad_of
 from tests.oracles.four_bar import FourBar
 from tests.thinned import thinned
 

@@ -11,11 +11,11 @@ import pytest
 from scipy.optimize import brentq
 
 import linkwork as lw
-from linkwork.app.edits.entries import copy_selection, rename
 from linkwork.core.foundation.errors import MechanismError, MechanismFileError
 from linkwork.core.mechanism.linkage import Linkage
 from linkwork.core.textfile.text_edits import TextEdits
 from linkwork.core.textfile.writer import write_text
+from linkwork.design.edits.entries import copy_selection, rename
 from tests.described import described_as
 from tests.forces.random_loads import loaded, rubbed
 
@@ -114,16 +114,16 @@ def test_a_slider_crank_driven_at_its_slider_stalls_where_the_rod_meets_the_fric
 ):
     """Force lines that touch the circles of A, B and O transmit no torque to the crank."""
     mechanism = slider_crank(0.3, 30.0, 0.2, driven="d")
-    (stall,) = mechanism.stalls()
+    (stall,) = lw.forces.stalls(mechanism)
     rho = 0.3 * 30.0
     angle = brentq(lambda theta: arm(theta, -rho, rho) + rho, 0.01, 0.5, xtol=1e-15)
     assert math.radians(stall.position["crank"]) == pytest.approx(angle, abs=1e-9)
     assert stall.proved
     moves, locked = stall.bracket
     assert locked - moves == pytest.approx(0.0, abs=1e-3)
-    assert mechanism.forces(at=moves).status is lw.ForceStatus.FOUND
+    assert mechanism.forces(at=moves).status is lw.forces.ForceStatus.FOUND
     lock = mechanism.forces(at=locked)
-    assert lock.status is lw.ForceStatus.SELF_LOCKING
+    assert lock.status is lw.forces.ForceStatus.SELF_LOCKING
     assert lock.proved
     assert math.isnan(lock["d.effort"])
 
@@ -147,7 +147,7 @@ def test_a_wedge_locks_at_the_angle_of_friction() -> None:
     """The rod at φ lifts the load while tan φ exceeds μ; the effort follows by two triangles."""
     mu = 0.4
     mechanism = trammel(mu)
-    (stall,) = mechanism.stalls()
+    (stall,) = lw.forces.stalls(mechanism)
     assert stall.value == pytest.approx(100.0 * math.cos(math.atan(mu)), rel=1e-9)
     assert stall.proved
     rows = mechanism.forces()
@@ -245,7 +245,7 @@ def test_two_ways_agree_with_friction_in_every_joint(name: str) -> None:
     values = mechanism.description.rows(mechanism.description.inputs[0])
     at = float(values[len(values) // 3])
     found = mechanism.forces(at)
-    assert found.status is lw.ForceStatus.FOUND
+    assert found.status is lw.forces.ForceStatus.FOUND
     assert found["disagreement"] < 1e-10
     names = ("power", "load_power", "energy_rate", "friction_power")
     power, loads, rate, friction = (float(found[n]) for n in names)
@@ -255,7 +255,7 @@ def test_two_ways_agree_with_friction_in_every_joint(name: str) -> None:
     assert abs(power + loads - friction - rate) < 1e-11 * sum(map(abs, terms))
 
 
-def _rubbing_in(length: str, size: float) -> lw.Reactions:
+def _rubbing_in(length: str, size: float) -> lw.forces.Reactions:
     """A slider-crank with a geared wheel and friction everywhere, in units of 1/size mm."""
     friction = {p: lw.Friction(mu=0.1, radius=6 * size) for p in "AB"}
     return lw.linkage(
@@ -292,7 +292,7 @@ def test_friction_of_stressed_joints_leaves_the_effort_undetermined() -> None:
     given = described_as(Linkage, cranks)
     pin = next(p for p in given.points if len(list(given.bodies_at(p))) == 2)
     found = cranks.changed(friction={pin: lw.Friction(mu=0.1, radius=5)}).forces(at=70)
-    assert found.status is lw.ForceStatus.UNDETERMINED
+    assert found.status is lw.forces.ForceStatus.UNDETERMINED
     assert math.isnan(found[found.efforts[0]])
 
 

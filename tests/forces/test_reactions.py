@@ -111,7 +111,7 @@ def test_a_block_pushed_beside_its_line_needs_a_moment() -> None:
     assert found.units["d.effort"] == "N"
 
 
-def gears(*, internal: bool, torque: float) -> lw.Reactions:
+def gears(*, internal: bool, torque: float) -> lw.forces.Reactions:
     """Two wheels about O and P; a torque on the second."""
     centre = 20 if internal else 60
     return lw.linkage(
@@ -150,7 +150,7 @@ def test_a_gear_without_its_pressure_angle_has_twenty_degrees() -> None:
     )
 
 
-def loaded_pair(table: str, kind: type, pretension: float | None) -> lw.Reactions:
+def loaded_pair(table: str, kind: type, pretension: float | None) -> lw.forces.Reactions:
     sizes = {"radii": (20, 40)}
     given = {} if pretension is None else {"pretension": pretension}
     part = kind(name="mesh", wheels=("first", "second"), centers=("O", "P"), **sizes, **given)
@@ -293,7 +293,7 @@ def test_only_stressed_joints_are_undetermined() -> None:
         loads=[lw.Load(point="I", force=(0, -10))],
     )  # fmt: skip
     found = loaded.forces(at=70)
-    assert found.status is lw.ForceStatus.UNDETERMINED
+    assert found.status is lw.forces.ForceStatus.UNDETERMINED
     assert found["disagreement"] < 1e-10
     unknown = {name.partition(".")[0] for name, rows in found.undetermined.items() if rows}
     assert unknown == {"A1", "A2", "A3", "O1", "O2", "O3"}

@@ -36,7 +36,7 @@ def test_two_ways_agree_on_a_library_mechanism(name: str) -> None:
         assert abs(power + loads - rate - lost) < 1e-12 * (abs(power) + abs(loads) + abs(rate))
 
 
-def _here(mechanism: lw.Mechanism) -> lw.Reactions:
+def _here(mechanism: lw.Mechanism) -> lw.forces.Reactions:
     return mechanism.forces(mechanism.solve(certify=False).input)
 
 

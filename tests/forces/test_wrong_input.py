@@ -283,7 +283,7 @@ variable = "θ2"
 def test_a_dimension_of_loops_may_be_an_angle() -> None:
     """Half a degree is more than every length in metres, and no mistake."""
     tilted = lw.loads(ANGLE + '"α" = { deviation = 0.5 }\n')
-    assert tilted.tolerance("d", at=60).root_sum_square > 0.0
+    assert lw.design.tolerance(tilted, "d", at=60).root_sum_square > 0.0
     with pytest.raises(lw.MechanismFileError) as caught:
         lw.loads(ANGLE + "a = { deviation = 1e9 }\n")
     assert [problem.message for problem in caught.value.problems] == [

@@ -13,12 +13,12 @@ import linkwork as lw
 
 
 @cache
-def _circuits() -> lw.Circuits:
+def _circuits() -> lw.circuits.Circuits:
     return lw.example("four-bar").circuits()
 
 
 @cache
-def _configurations() -> lw.Configurations:
+def _configurations() -> lw.circuits.Configurations:
     return lw.example("four-bar").configurations(60)
 
 

@@ -11,8 +11,8 @@ import numpy as np
 import pytest
 
 import linkwork as lw
+from linkwork.circuits.inverted_linkage import inverted
 from linkwork.core.foundation.arrays import ComplexArray
-from linkwork.core.mechanism.inversion import inverted
 from linkwork.core.mechanism.linkage import Linkage
 from tests.described import described_as
 from tests.laws.contacts import KINDS, contact
@@ -58,7 +58,7 @@ def test_wheels_cams_and_curves_move_alike_whatever_is_ground(kind: str) -> None
     mechanism, motion = _contact(kind)
     assert motion.found.all()
     widest = max(linkage_of(mechanism).links.values(), key=len)
-    others = [entry for entry in mechanism.inversions() if entry.ground != "ground"]
+    others = [entry for entry in lw.circuits.inversions(mechanism) if entry.ground != "ground"]
     assert [entry.problem for entry in others] == [""] * len(others)
     for entry in others:
         other = mechanism.inversion(entry.ground).sweep(certify=False)
@@ -81,7 +81,7 @@ def test_an_inversion_has_the_same_relative_motion(name: str) -> None:
     mechanism, motion = mechanism_of(name), motion_of(name)
     links = linkage_of(mechanism).links
     widest = max(links.values(), key=len)
-    for entry in mechanism.inversions():
+    for entry in lw.circuits.inversions(mechanism):
         if entry.ground == "ground":
             continue
         if entry.problem:
@@ -110,7 +110,9 @@ def test_the_inversion_of_an_inversion_is_the_mechanism(name: str) -> None:
     # formulas grow with every change of ground
     mechanism = lw.Mechanism(replace(mechanism.description, outputs={}))
     ground = linkage_of(mechanism).links["ground"]
-    entry = next(e for e in mechanism.inversions() if e.ground != "ground" and not e.problem)
+    entry = next(
+        e for e in lw.circuits.inversions(mechanism) if e.ground != "ground" and not e.problem
+    )
     again = mechanism.inversion(entry.ground).inversion("frame")
     back, back_ground = again.sweep(certify=False), linkage_of(again).links["ground"]
     for point in linkage_of(mechanism).points:
@@ -215,16 +217,16 @@ def test_the_ground_itself_changes_nothing_but_the_input() -> None:
 
 
 def test_all_inversions_are_listed_with_their_names() -> None:
-    told = [entry.text for entry in lw.example("four-bar").inversions()]
+    told = [entry.text for entry in lw.circuits.inversions(lw.example("four-bar"))]
     assert told == [
         "ground: crank-rocker (GCRR): Grashof, s + l < p + q by 20 mm",
         "crank: double-crank (GCCC): Grashof, s + l < p + q by 20 mm",
         "coupler: crank-rocker: Grashof, s + l < p + q by 20 mm",
         "rocker: double-rocker: Grashof, s + l < p + q by 20 mm",
     ]
-    shaper = lw.example("inverted-slider-crank").inversions()
+    shaper = lw.circuits.inversions(lw.example("inverted-slider-crank"))
     assert [entry.like for entry in shaper] == ["ground", "ground", "lever"]
-    six = lw.example("stephenson-far-crank").inversions()
+    six = lw.circuits.inversions(lw.example("stephenson-far-crank"))
     assert [(entry.ground, entry.type, entry.like) for entry in six] == [
         ("ground", "Stephenson III", "ground"),
         ("left", "Stephenson I", "left"),
@@ -236,7 +238,7 @@ def test_all_inversions_are_listed_with_their_names() -> None:
 
 
 def test_a_cylinder_is_listed_with_the_reason_why_it_cannot_be_ground() -> None:
-    *_, last = mechanism_of("cylinder as input").inversions()
+    *_, last = lw.circuits.inversions(mechanism_of("cylinder as input"))
     assert last.text == (
         "ram rod: ram rod is part of a cylinder: write it as two links with a slider"
     )

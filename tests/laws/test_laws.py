@@ -13,7 +13,7 @@ import linkwork as lw
 from linkwork.core.foundation.units import AngleUnit
 from linkwork.core.mechanism.linkage import Linkage
 from linkwork.core.mechanism.part.index import PARTS
-from linkwork.core.results.motion_table import table_of
+from linkwork.core.results.motion import table_of
 from linkwork.core.results.quantity import Kind
 from tests.laws.agreement import CLOSE, agree, angles_of, internal, series_of
 from tests.laws.mechanisms import NAMES, mechanism_of, motion_of, size_of

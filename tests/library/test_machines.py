@@ -14,7 +14,9 @@ from tests.oracles.circles import SliderCrank, circles_meet
 from tests.oracles.four_bar import FourBar
 
 
-def extremes(name: str, quantity: str) -> tuple[lw.OutputLimit, lw.OutputLimit]:
+def extremes(
+    name: str, quantity: str
+) -> tuple[lw.core.results.OutputLimit, lw.core.results.OutputLimit]:
     """The smallest and the largest value of a quantity over a turn, located."""
     found = lw.example(name).sweep(limits_of=[quantity]).output_limits
     return min(found, key=lambda at: at.value), max(found, key=lambda at: at.value)
@@ -398,7 +400,7 @@ def test_toggle_latch_rests_on_both_sides_of_its_centre() -> None:
     """d = r cos θ + √(l² - r² sin² θ); V = k/2 (180 - d - free)², A = m r²/3 + M d'²."""
     latch = lw.example("toggle-latch")
     rest = math.degrees(math.acos((40**2 + 90**2 - 60**2) / (2 * 40 * 90)))
-    found = sorted(latch.equilibria(), key=lambda each: each.input)
+    found = sorted(lw.forces.equilibria(latch), key=lambda each: each.input)
     same([each.input for each in found], [-rest, 0, rest], 180)
     assert [each.stable for each in found] == [True, False, True]
     # at the free length V'' = k d'²; in line V'' = -k (90 - 80) (r + r²/l)

@@ -10,7 +10,7 @@ import networkx
 import pytest
 
 import linkwork as lw
-from linkwork.core.mechanism.chain import (
+from linkwork.circuits.chain import (
     Chain,
     chain_name,
     eight_link_chains,

@@ -20,7 +20,7 @@ FOUR_BAR = {
 }
 
 
-def _classified(mechanism: lw.Mechanism) -> lw.Classification:
+def _classified(mechanism: lw.Mechanism) -> lw.core.results.Classification:
     seen = as_linkage(mechanism.model)
     assert isinstance(seen, Seen)
     return classify(seen)

@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 import linkwork as lw
+from linkwork.app.pages.moving_scene import Frame, moving_scene
 from linkwork.core.drawing import Disc, Hatch, Polygon, Role, scene_of
-from linkwork.core.drawing.moving_scene import Frame, moving_scene
 from linkwork.core.foundation.arrays import ComplexArray
 from linkwork.core.mechanism.skeleton import Rail
 

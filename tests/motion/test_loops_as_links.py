@@ -297,8 +297,8 @@ def test_an_input_is_counted_from_the_links_own_direction() -> None:
 
 def test_loops_are_inverted_as_the_links_that_they_are() -> None:
     loops, links = (lw.example(name) for name in PAIRS[0])
-    assert {(e.ground, e.type) for e in loops.inversions()} == {
-        (e.ground, e.type) for e in links.inversions()
+    assert {(e.ground, e.type) for e in lw.circuits.inversions(loops)} == {
+        (e.ground, e.type) for e in lw.circuits.inversions(links)
     }
     one, other = (mechanism.inversion("rocker").sweep() for mechanism in (loops, links))
     np.testing.assert_allclose(one["frame"], other["frame"], atol=1e-9)

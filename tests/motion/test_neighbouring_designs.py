@@ -10,9 +10,12 @@ import pytest
 from hypothesis import given, settings, strategies as st
 
 import linkwork as lw
+from linkwork.circuits.failure.remedies import nearest_assembly
 from linkwork.core.foundation.statuses import Certification
 from linkwork.core.mechanism.linkage import Linkage
 from linkwork.core.motion import warm_started
+from linkwork.core.motion.iterating import guessed_points, pulled_guess
+from linkwork.core.motion.sweeping import approximate_sweep
 from tests.described import described_as
 
 
@@ -105,7 +108,7 @@ def test_nothing_is_renewed_where_a_dead_point_has_come_between() -> None:
     locked = four_bar(a=70.0)
     cycle = four_bar().sweep()
     assert warm_started(locked.model, cycle) is None
-    beside = locked.approximate_sweep(cycle)
+    beside = approximate_sweep(locked.model, cycle)
     followed = locked.sweep()
     assert [limit.input for limit in beside.limits] == pytest.approx(
         [limit.input for limit in followed.limits], abs=1e-6
@@ -117,7 +120,7 @@ def test_nothing_is_renewed_from_a_cycle_of_another_table() -> None:
     design = four_bar()
     assert warm_started(design.model, lw.example("slider-crank").sweep()) is None
     assert warm_started(design.model, design.sweep(step=2)) is None
-    assert design.approximate_sweep().found.all()
+    assert approximate_sweep(design.model).found.all()
 
 
 def test_a_row_that_would_jump_to_the_other_branch_is_not_renewed() -> None:
@@ -132,7 +135,7 @@ def test_a_row_that_would_jump_to_the_other_branch_is_not_renewed() -> None:
 
 @given(st.floats(1.0, 9.0))
 def test_the_gap_of_a_dyad_is_what_its_two_bars_leave_between_circles(rocker: float) -> None:
-    open_ = four_bar(c=rocker).nearest_assembly(60)
+    open_ = nearest_assembly(four_bar(c=rocker).model, 60)
     crank = 40 * complex(math.cos(math.pi / 3), math.sin(math.pi / 3))
     wanted = (120 - rocker) - abs(100 - crank)
     assert wanted > 0
@@ -150,7 +153,7 @@ def test_the_gap_of_a_dyad_is_what_its_two_bars_leave_between_circles(rocker: fl
 @pytest.mark.parametrize("name", ["four-bar", "rapier-drive", "jansen-leg", "whitworth"])
 def test_what_closes_has_no_gap(name: str) -> None:
     design = lw.example(name)
-    nearest, position = design.nearest_assembly(), design.solve()
+    nearest, position = nearest_assembly(design.model), design.solve()
     assert nearest.gap < 1e-9
     assert nearest.apart == ()
     for point, place in position.points.items():
@@ -160,7 +163,7 @@ def test_what_closes_has_no_gap(name: str) -> None:
 def test_later_loops_are_closed_though_an_earlier_one_is_open() -> None:
     leg = lw.example("jansen-leg")
     broken = leg.changed(lengths={**described_as(Linkage, leg).lengths, "A C": 5.0})
-    nearest = broken.nearest_assembly()
+    nearest = nearest_assembly(broken.model)
     gaps = {loop: math.hypot(*vector) for loop, vector in nearest.gaps.items()}
     assert gaps["O A B P"] < 1e-9
     assert gaps["O A C P"] > 1.0
@@ -225,9 +228,9 @@ def test_one_unknown_follows_a_dragged_point(name: str) -> None:
     still = dict(position.unknowns)
     moved = []
     for point, (x, y) in position.points.items():
-        before = design.pulled_guess(point, (x, y), still)
+        before = pulled_guess(design.model, point, (x, y), still)
         assert before == pytest.approx(still, abs=1e-9)
-        guess = design.pulled_guess(point, (x + 3.0, y - 2.0), still)
+        guess = pulled_guess(design.model, point, (x + 3.0, y - 2.0), still)
         changed = [unknown for unknown in guess if abs(guess[unknown] - still[unknown]) > 1e-9]
         assert len(changed) <= 1
         moved += changed and [point]
@@ -238,22 +241,22 @@ def test_one_unknown_follows_a_dragged_point(name: str) -> None:
                 for at in design.iterates(still | {unknown: guess[unknown] + by}).iterates[:1]
             ]
             assert far[0] == min(far)
-    assert set(moved) == set(design.guessed_points())
+    assert set(moved) == set(guessed_points(design.model))
 
 
 def test_a_sliding_point_is_dragged_along_its_line() -> None:
     design = lw.example("crank-slider")
     (x, y) = design.solve().points["B"]
     still = dict(design.solve().unknowns)
-    guess = design.pulled_guess("B", (x + 7.0, y + 50.0), still)
+    guess = pulled_guess(design.model, "B", (x + 7.0, y + 50.0), still)
     assert guess == pytest.approx({**still, "d": still["d"] + 7.0})
 
 
 def test_what_cannot_be_dragged_is_said() -> None:
     design = lw.example("four-bar")
     still = dict(design.solve().unknowns)
-    assert design.pulled_guess("O2", (5.0, 5.0), still) == pytest.approx(still)
+    assert pulled_guess(design.model, "O2", (5.0, 5.0), still) == pytest.approx(still)
     with pytest.raises(lw.UnknownNameError, match='there is no point "Z"'):
-        design.pulled_guess("Z", (0.0, 0.0))
+        pulled_guess(design.model, "Z", (0.0, 0.0))
     with pytest.raises(lw.InputError, match="the coordinates of B must be two finite numbers"):
-        design.pulled_guess("B", (math.nan, 0.0))
+        pulled_guess(design.model, "B", (math.nan, 0.0))

@@ -71,7 +71,7 @@ def test_dead_points_between_long_links_are_located_and_proved(ratio: float, sha
         "long crank": FourBar(1.5, ratio, 1.2, ratio),
     }[shape]
     motion = four_bar(bar, 90).sweep()
-    assert [limit.kind for limit in motion.limits] == [lw.LimitKind.DEAD_POINT] * 2
+    assert [limit.kind for limit in motion.limits] == [lw.core.results.LimitKind.DEAD_POINT] * 2
     assert motion.certified[motion.found].all()
     exact = sorted(exact_dead_points(bar))
     assert len(exact) == 2

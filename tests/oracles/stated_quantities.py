@@ -10,9 +10,9 @@ from typing import Any
 import numpy as np
 from flint import acb, arb, ctx
 
-from linkwork.contacts.cams import CamOutline, Follower
 from linkwork.core.expression.grammar import parse
 from linkwork.core.foundation.names import canonical
+from linkwork.core.mechanism.bodies import CamOutline, Follower
 from linkwork.core.mechanism.description import Description
 from linkwork.core.mechanism.varied_numbers import VariedNumber
 from linkwork.core.motion.model import Model

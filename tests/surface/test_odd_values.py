@@ -12,6 +12,8 @@ import pytest
 import linkwork as lw
 from linkwork import families as batch
 from linkwork.core.drawing.pose import Pose
+from linkwork.core.motion.iterating import moving_loops, pulled_guess
+from linkwork.core.motion.sweeping import approximate_sweep
 from linkwork.families.study import summary_of
 from tests.failures.test_words_that_help import BAR as PARTS
 
@@ -32,15 +34,18 @@ PRESS = lw.example("crank-press")
         ),
         (lambda: lw.Segment(law=3, over=1), "law of lw.Segment must be a text, got 3"),  # type: ignore[arg-type]
         (lambda: lw.Input(link=3), "link of lw.Input must be a text, got 3"),  # type: ignore[arg-type]
-        (lambda: lw.Force(at="A", x="1", y=2), "x of lw.Force must be a number, got '1'"),  # type: ignore[arg-type]
+        (
+            lambda: lw.forces.Force(at="A", x="1", y=2),  # type: ignore[arg-type]
+            "x of lw.forces.Force must be a number, got '1'",
+        ),
         (
             lambda: lw.NewtonOptions(max_steps=2.5),  # type: ignore[arg-type]
             "max_steps of lw.NewtonOptions must be a whole number, got 2.5",
         ),
         (lambda: BAR.driven_by(x=3), 'there is no field "x" (fields: '),
         (lambda: BAR.changed(joint=3), 'there is no field "joint" (fields: '),
-        (lambda: BAR.approximate_sweep(3), "the neighbour must be a Motion, got 3"),  # type: ignore[arg-type]
-        (lambda: BAR.moving_loops({}), "the cycle must be a Motion, got {}"),  # type: ignore[arg-type]
+        (lambda: approximate_sweep(BAR.model, 3), "the neighbour must be a Motion, got 3"),  # type: ignore[arg-type]
+        (lambda: moving_loops(BAR.model, {}), "the cycle must be a Motion, got {}"),  # type: ignore[arg-type]
         (lambda: PRESS.forces(motion="a"), "the motion must be a Motion, got 'a'"),  # type: ignore[arg-type]
         (
             lambda: PRESS.forces(motion=BAR.sweep()),
@@ -55,7 +60,10 @@ PRESS = lw.example("crank-press")
         (lambda: BAR.sweep(step=90).place("Z"), 'there is no point "Z" (points: '),
         (lambda: BAR.sweep(step=90).quantity([1]), "a name must be a text, got [1]"),  # type: ignore[arg-type]
         (lambda: BAR.scene(60, traces=3), "traces must be a list of names, got 3"),  # type: ignore[arg-type]
-        (lambda: BAR.pulled_guess("A", "no"), "the coordinates of A must be two finite numbers"),  # type: ignore[arg-type]
+        (
+            lambda: pulled_guess(BAR.model, "A", "no"),  # type: ignore[arg-type]
+            "the coordinates of A must be two finite numbers",
+        ),
         (lambda: BAR.circuits(certify=[]), "certify must be True or False, got []"),  # type: ignore[arg-type]
         (lambda: BAR.solve(throw="no"), "throw must be True or False, got 'no'"),  # type: ignore[arg-type]
         (lambda: BAR.sweep(progress=3), "progress must be a function of the fraction, got 3"),  # type: ignore[arg-type]
@@ -147,7 +155,7 @@ step = 0.5
 def test_forces_at_a_speed_beyond_all_accelerations_have_a_status() -> None:
     fast = changed("crank-press", 'speed = "120 rpm"', "speed = 1e308")
     found = lw.loads(fast).forces(at=30)
-    assert found.status is not lw.ForceStatus.FOUND
+    assert found.status is not lw.forces.ForceStatus.FOUND
 
 
 def test_a_load_is_no_complex_number() -> None:

@@ -26,7 +26,7 @@ class Missing:
 
 sys.meta_path.insert(0, Missing())
 import linkwork as lw
-from linkwork.api import example_text
+from linkwork import example_text
 from linkwork.synthesis.solvers.solving import solve_task
 from linkwork.app.live.browser_desk import BrowserDesk
 

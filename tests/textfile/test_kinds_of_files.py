@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 
 import linkwork as lw
-from linkwork.app.task.templates import template_names, template_text
+from linkwork.synthesis.tasks.templates import template_names, template_text
 
 _OF_TASK = (
     "this is a task: linkwork synthesize FILE or linkwork view FILE, in Python linkwork.Task.load"

@@ -6,10 +6,10 @@ import numpy as np
 import pytest
 
 import linkwork as lw
-from linkwork.app.edits.unit_change import change_units
 from linkwork.core.foundation.errors import InputError
 from linkwork.core.textfile.reader import example_text
 from linkwork.core.textfile.text_edits import TextEdits
+from linkwork.design.edits.unit_change import change_units
 
 #: Gears, racks, belts, cams of both kinds, loops, formulas, slots, several inputs, speeds.
 TRIED = [

@@ -14,8 +14,8 @@ from PIL import Image
 
 import linkwork as lw
 from linkwork.app import FilmOptions, animation, check_animation
+from linkwork.app.pages.moving_scene import MovingScene
 from linkwork.core.drawing import Arc, Role, Scene
-from linkwork.core.drawing.moving_scene import MovingScene
 
 _FEW = FilmOptions(rows=6, fps=20, dpi=40)
 

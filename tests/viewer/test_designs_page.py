@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import Any
 
 import linkwork as lw
-from linkwork.api.designs_folder import FolderOptions, write_designs
+from linkwork.synthesis.designs_folder import FolderOptions, write_designs
 
 
 def test_a_table_with_a_column_for_each_goal_fits_into_the_page(

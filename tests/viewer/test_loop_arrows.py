@@ -10,6 +10,7 @@ from linkwork.app.pages.packing import unpressed
 from linkwork.app.pages.page_building import loop_arrows
 from linkwork.app.pages.page_data import VectorData
 from linkwork.core.drawing.pose import printed_formula
+from linkwork.core.motion.iterating import moving_loops
 from tests.library_mechanisms import read_example
 from tests.thinned import thinned
 from tests.viewer.unpacking import unpacked
@@ -36,7 +37,7 @@ def ends_of(arrow: VectorData, motion: lw.Motion) -> tuple[np.ndarray, np.ndarra
 def test_every_arrow_is_its_term_in_every_row(name: str) -> None:
     mechanism = read_example(name)
     motion = mechanism.sweep(certify=False)
-    loops = mechanism.moving_loops(motion)
+    loops = moving_loops(mechanism.model, motion)
     terms = {
         printed_formula(vector.name): vector.values * (-1 if vector.backwards else 1)
         for loop in loops
@@ -59,7 +60,7 @@ def test_arrows_of_a_linkage_lie_between_its_points() -> None:
     mechanism = lw.example("four-bar")
     motion = mechanism.sweep(certify=False)
     points = list(motion.points)
-    arrows = list(loop_arrows(mechanism.moving_loops(motion), motion, unpressed))
+    arrows = list(loop_arrows(moving_loops(mechanism.model, motion), motion, unpressed))
     assert {(points[a.start], points[a.end]) for a in arrows} == {
         ("O2", "A"), ("A", "B"), ("O4", "B"), ("O2", "O4"),
     }  # fmt: skip
@@ -69,7 +70,7 @@ def test_arrows_of_a_linkage_lie_between_its_points() -> None:
 def test_a_vector_that_no_points_hold_has_a_course_of_its_own() -> None:
     mechanism = lw.example("rapier-drive")
     motion = mechanism.sweep(certify=False)
-    arrows = list(loop_arrows(mechanism.moving_loops(motion), motion, unpressed))
+    arrows = list(loop_arrows(moving_loops(mechanism.model, motion), motion, unpressed))
     own = {arrow.name for arrow in arrows if arrow.course}
     assert own
     assert {arrow.tone for arrow in arrows} == {1, 2}
@@ -82,5 +83,5 @@ def test_a_vector_that_no_points_hold_has_a_course_of_its_own() -> None:
 def test_what_has_no_loops_has_no_arrows() -> None:
     mechanism = lw.example("planetary-gear")
     motion = mechanism.sweep(certify=False)
-    assert mechanism.moving_loops(motion) == ()
+    assert moving_loops(mechanism.model, motion) == ()
     assert list(loop_arrows((), motion, unpressed)) == []

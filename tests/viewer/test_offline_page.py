@@ -6,6 +6,7 @@ import math
 import re
 from collections.abc import Callable
 from dataclasses import replace
+from functools import partial
 from itertools import combinations
 from typing import Any
 
@@ -14,13 +15,14 @@ import pytest
 
 import linkwork as lw
 from linkwork.app import drawn_page, motion_page, offline_page
+from linkwork.app.pages.moving_scene import moving_scene
 from linkwork.app.pages.offline_page import page_json
 from linkwork.app.pages.packing import play_order, unpressed
 from linkwork.core.drawing import render
-from linkwork.core.drawing.moving_scene import moving_scene
+from linkwork.core.drawing.annotations import Force
 from linkwork.core.drawing.scene import Disc, Role
 from linkwork.core.mechanism.linkage import Linkage
-from linkwork.forces.results import Force
+from linkwork.core.motion.iterating import moving_loops
 from tests.described import described_as
 
 Open = Callable[..., Any]
@@ -170,7 +172,9 @@ def test_choosing_a_circuit_shows_it_at_the_same_input(open_page: Open) -> None:
 def test_paths_names_vectors_and_velocities_can_be_shown_and_hidden(
     open_page: Open, jansen: lw.Motion
 ) -> None:
-    page = open_page({"motion": jansen}, loops=lw.example("jansen-leg").moving_loops)
+    page = open_page(
+        {"motion": jansen}, loops=partial(moving_loops, lw.example("jansen-leg").model)
+    )
     page.evaluate("linkwork.goToRow(40)")
     trace, name = page.locator(".r-trace").first, page.locator("text.r-label").first
     for what, shape in (("Paths", trace), ("Names", name)):

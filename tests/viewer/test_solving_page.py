@@ -15,6 +15,7 @@ import pytest
 from click.testing import CliRunner
 
 import linkwork as lw
+from linkwork.app.pages.animation import solving_page
 from linkwork.core.commands.main import linkwork
 from linkwork.core.foundation.errors import InputError
 from linkwork.core.mechanism.varied_numbers import varied_numbers, with_numbers
@@ -118,7 +119,7 @@ def test_a_cycle_in_the_page_is_that_of_python_bit_by_bit(
     page = open_solving(name, names)
     motion = mechanism.sweep()
     design = record_design(mechanism.model, names)
-    data = mechanism.solving_page(names, motion).data
+    data = solving_page(mechanism, names, motion).data
     printed = print_solver(
         design, PYTHON, points=list(motion.points), columns=data.columns, turns=[]
     )
@@ -270,7 +271,7 @@ def test_an_output_that_cannot_be_recorded_is_left_out(tmp_path: Path) -> None:
     mechanism = lw.loads(text.replace("[outputs]", '[outputs]\ngrowth = "exp(rocker / 100)"'))
     motion = mechanism.sweep()
     assert "growth" in motion.outputs
-    columns = mechanism.solving_page(["A B"], motion).data.columns
+    columns = solving_page(mechanism, ["A B"], motion).data.columns
     assert "mu" in columns
     assert "growth" not in columns
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 import builtins
 import json
 from collections.abc import Callable
+from functools import partial
 from importlib import resources
 from pathlib import Path
 from typing import Any
@@ -16,6 +17,7 @@ import linkwork as lw
 from linkwork.app import motion_page, motions_widget
 from linkwork.app.pages.notebook import _widget_class
 from linkwork.app.pages.offline_page import page_json
+from linkwork.core.motion.iterating import moving_loops
 
 
 @pytest.fixture(scope="module")
@@ -36,7 +38,7 @@ def test_its_state_is_the_data_of_the_page(circuits: dict[str, lw.Motion]) -> No
     bar = lw.example("four-bar")
     widget = bar.widget(all_circuits=True)
     assert widget.get_state()["page"] == _page(
-        circuits, equations=bar.equations().mathml(), loops=bar.moving_loops
+        circuits, equations=bar.equations().mathml(), loops=partial(moving_loops, bar.model)
     )
     assert widget.configuration == "circuit 1"
     assert widget.row == 0

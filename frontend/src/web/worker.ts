@@ -83,7 +83,7 @@ const PATIENCE = 20_000;
 const IMPORT = `
 from pyodide.ffi import can_run_sync, run_sync
 
-from linkwork.api import example_text, loads
+from linkwork import example_text, loads
 from linkwork.app.live.browser_desk import BrowserDesk
 
 

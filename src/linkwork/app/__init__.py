@@ -10,6 +10,7 @@ if TYPE_CHECKING:
     from linkwork.app.pages.animation import (
         ANIMATION_FORMATS as ANIMATION_FORMATS,
         FilmOptions as FilmOptions,
+        animate as animate,
         animate_motion as animate_motion,
         animation as animation,
         check_animation as check_animation,
@@ -24,6 +25,7 @@ if TYPE_CHECKING:
         position_html as position_html,
         sensitivity_html as sensitivity_html,
         tolerance_html as tolerance_html,
+        widget as widget,
     )
     from linkwork.app.pages.offline_page import offline_page as offline_page
     from linkwork.app.pages.page_building import (

@@ -8,6 +8,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from linkwork import wings
 from linkwork.circuits.branches import (
     CurveBranch,
     TracedCurve,
@@ -37,7 +38,6 @@ from linkwork.core.numerics.local_parametrization import (
     whole_turns,
 )
 from linkwork.core.numerics.system import SolvedRows
-from linkwork.families import by_kernels
 
 _STEPS = 24  # of a turn, besides those that the march takes in between
 _AS_LONG = 150  # rows of a sweep: as long does it take to follow and prove a turn in plain numbers
@@ -53,6 +53,7 @@ def full_turn(drive: Drive, start: Array) -> TracedCurve | None:
     own = leads.with_parameter(p)
     if not leads.is_angle[p] or own is None or not own.provable:
         return None
+    by_kernels = wings.use("families.by_kernels")
     if not by_kernels.kernels_pay(drive.model, _AS_LONG):
         return None
     here = own.node(start)

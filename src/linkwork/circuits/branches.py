@@ -8,6 +8,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from linkwork.circuits.crossed_step import cut_at_crossing
 from linkwork.core.equations.compiling import ParametrizedTable
 from linkwork.core.foundation.arrays import Array
 from linkwork.core.foundation.statuses import CircuitEnd, Status
@@ -20,7 +21,6 @@ from linkwork.core.numerics.branch_tracking import (
     rows_on_track,
 )
 from linkwork.core.numerics.change_point import Crossing
-from linkwork.core.numerics.crossed_step import cut_at_crossing
 from linkwork.core.numerics.curve_proof import ProvenCurve, prove_curve, same_solution
 from linkwork.core.numerics.curve_tracing import Curve, CurveOptions, Leg, sign_change, trace
 from linkwork.core.numerics.local_parametrization import (

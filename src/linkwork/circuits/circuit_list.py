@@ -8,6 +8,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from linkwork.circuits import failure as why
 from linkwork.circuits.arcs import Arc, Explorer, Walks, positions_at_value
 from linkwork.circuits.assembling import Assemblies, positions_at
 from linkwork.circuits.branches import CurveBranch, weakest_place
@@ -26,7 +27,6 @@ from linkwork.core.foundation.rounding import REGULAR_CONDITION
 from linkwork.core.foundation.statuses import Certification, CircuitEnd, Completeness, Status
 from linkwork.core.foundation.units import FULL_TURN
 from linkwork.core.foundation.values import check_flags
-from linkwork.core.motion import failure as why
 from linkwork.core.motion.following import Drive
 from linkwork.core.motion.limits import change_point_limit, dead_point_limit
 from linkwork.core.motion.model import Model

@@ -5,12 +5,12 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
+from linkwork.circuits.chain import Chain, chain_name, contours, inversion_name
 from linkwork.circuits.loop_type import driven_joints, input_loop, loop_type
-from linkwork.core.equations.reading.joints import NotRead
-from linkwork.core.equations.reading.linkage_of_loops import read_linkage
+from linkwork.circuits.reading_joints import NotRead
+from linkwork.circuits.reading_loops import read_linkage
 from linkwork.core.foundation.errors import MechanismError
 from linkwork.core.foundation.names import GROUND
-from linkwork.core.mechanism.chain import Chain, chain_name, contours, inversion_name
 from linkwork.core.mechanism.linkage import Linkage
 from linkwork.core.mechanism.loops import Loops
 from linkwork.core.mechanism.part.part import Joint, JointKind

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import click
 
-from linkwork.api.mechanism import Mechanism
+from linkwork import wings
 from linkwork.circuits.listing import (
     branch_columns,
     circuit_fields,
@@ -12,13 +12,12 @@ from linkwork.circuits.listing import (
     configuration_columns,
 )
 from linkwork.circuits.results import Circuit, Circuits, Configurations
+from linkwork.core.api.mechanism import Mechanism
 from linkwork.core.commands.options import (
     at_option,
     check_outputs,
-    debug_option,
     file_argument,
     input_values,
-    json_option,
     read_mechanism,
     set_option,
     shown_source,
@@ -26,8 +25,10 @@ from linkwork.core.commands.options import (
 from linkwork.core.commands.sweep import check_points
 from linkwork.core.commands.terminal import (
     bad,
+    debug_option,
     fields,
     good,
+    json_option,
     print_json,
     print_lines,
     progress,
@@ -43,7 +44,6 @@ from linkwork.core.foundation.names import canonical
 from linkwork.core.motion.extremes import check_quantities
 from linkwork.core.results.listing.motion_listing import inputs_text, short
 from linkwork.core.results.quantity import Kind
-from linkwork.writers.charts.circuits import MOST_PANELS, circuit_chart
 
 # ----------------------------------------------------------------------
 # ``linkwork circuits``
@@ -117,11 +117,12 @@ def _drawn(mechanism: Mechanism, found: Circuits, names: tuple[str, ...], draw: 
     if not len(found):
         return f"Did not write {draw}: there is nothing to draw."
     with progress("drawing"):
-        write(circuit_chart(found, names), draw)
+        charts = wings.use("writers.charts.circuits")
+        write(charts.circuit_chart(found, names), draw)
     every = len(mechanism.loop_equations.unknowns)
-    if names or every <= MOST_PANELS:
+    if names or every <= charts.MOST_PANELS:
         return f"Wrote {draw}."
-    return f"Wrote {draw}: the first {MOST_PANELS} of {every} unknowns; --of NAME chooses."
+    return f"Wrote {draw}: the first {charts.MOST_PANELS} of {every} unknowns; --of NAME chooses."
 
 
 def circuits_lines(found: Circuits) -> list[str]:

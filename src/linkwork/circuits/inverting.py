@@ -4,13 +4,13 @@ from __future__ import annotations
 
 from dataclasses import replace
 
+from linkwork.circuits.chain import Chain, orbits
 from linkwork.circuits.classification import NotSeen, Seen, as_linkage, classify
+from linkwork.circuits.inverted_linkage import inverted, settled
 from linkwork.core.foundation.errors import InputError
 from linkwork.core.foundation.names import GROUND, as_name
-from linkwork.core.mechanism.chain import Chain, orbits
 from linkwork.core.mechanism.description import Description
 from linkwork.core.mechanism.inputs import Input
-from linkwork.core.mechanism.inversion import inverted, settled
 from linkwork.core.mechanism.linkage import Linkage
 from linkwork.core.mechanism.loops import Loops, PlainEquations
 from linkwork.core.mechanism.skeleton import directed

@@ -7,9 +7,9 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from itertools import pairwise
 
+from linkwork.circuits.chain import Chain
 from linkwork.core.equations.model import LinkAngle
 from linkwork.core.foundation.names import GROUND
-from linkwork.core.mechanism.chain import Chain
 from linkwork.core.mechanism.linkage import Linkage
 from linkwork.core.mechanism.part.guides import GuidePart, Slider
 from linkwork.core.mechanism.part.part import Joint, JointKind

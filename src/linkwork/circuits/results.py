@@ -8,8 +8,9 @@ from typing import Any
 
 import numpy as np
 
+from linkwork import wings
 from linkwork.core.foundation.arrays import Array
-from linkwork.core.foundation.containers import Deferred, FrozenDict, NamedSequence, presenter
+from linkwork.core.foundation.containers import Deferred, FrozenDict, NamedSequence
 from linkwork.core.foundation.errors import UnknownNameError, choices, internal
 from linkwork.core.foundation.statuses import CircuitEnd, Completeness
 from linkwork.core.results.failure import Failure
@@ -247,14 +248,16 @@ class Circuits(NamedSequence[Circuit]):
         UnknownNameError
             For a name that does not exist.
         """
-        return presenter(Circuits.plot)(self, *names, kind=kind, ax=ax, theme=theme, title=title)
+        return wings.use("writers").plot_circuits(
+            self, *names, kind=kind, ax=ax, theme=theme, title=title
+        )
 
     def __repr__(self) -> str:
         return str(circuits_summary(self))
 
     def _repr_html_(self) -> str:
         """A picture and a short table, for notebooks."""
-        return presenter(Circuits._repr_html_)(self)
+        return wings.use("app").circuits_html(self)
 
     def to_dict(self) -> dict[str, Any]:
         """Plain data, as in the command line's JSON."""
@@ -428,7 +431,7 @@ class Configurations(NamedSequence[Position]):
 
     def _repr_html_(self) -> str:
         """A picture and a short table, for notebooks."""
-        return presenter(Configurations._repr_html_)(self)
+        return wings.use("app").configurations_html(self)
 
     def to_dict(self) -> dict[str, Any]:
         """The list as JSON-ready data."""

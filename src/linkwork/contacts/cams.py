@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace
-from typing import Any, ClassVar, Self
+from typing import Any, Self
 
 from linkwork.contacts.curves import COORDINATES, coordinates, turned_back
 from linkwork.core.foundation.errors import choices
@@ -19,9 +19,10 @@ from linkwork.core.foundation.values import (
 )
 from linkwork.core.mechanism.bodies import (
     Bodies,
-    Contour,
+    CamOutline,
     DiscFigure,
     Figure,
+    Follower,
     Outline,
     Outlines,
     circle,
@@ -51,27 +52,6 @@ _SEGMENT = (
     Key("over", NumberKey("angle"), "Angle by which the cam turns", required=True),
     Key("lift", NumberKey("lift"), "Displacement of the follower, positive away from the centre"),
 )
-
-
-class CamOutline(Contour):
-    """The outline of a cam."""
-
-
-@dataclass(frozen=True, kw_only=True)
-class Follower(Figure):
-    """The follower of a cam: ``point`` is the knife edge, the roller's centre or on the face.
-
-    It moves on a ``slider`` or swings about ``pivot``. ``center`` is that of the cam.
-    """
-
-    shown_again: ClassVar[bool] = True
-
-    link: str
-    point: str
-    center: str
-    contact: str
-    slider: str | None = None
-    pivot: str | None = None
 
 
 @dataclass(frozen=True, kw_only=True)

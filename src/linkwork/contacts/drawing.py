@@ -7,7 +7,6 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from linkwork.contacts.cams import CamOutline, Follower
 from linkwork.contacts.curves import CurvedSlot, PitchCurve
 from linkwork.core.drawing.links import contour_line, contour_mark, convex_outline, stems, tones
 from linkwork.core.drawing.parts import figure_symbols
@@ -15,7 +14,7 @@ from linkwork.core.drawing.pose import Pose
 from linkwork.core.drawing.scene import Hatch, Measures, Polygon, Polyline, Primitive, Role, xy
 from linkwork.core.foundation.arrays import ComplexArray
 from linkwork.core.foundation.names import GROUND
-from linkwork.core.mechanism.bodies import Contour
+from linkwork.core.mechanism.bodies import CamOutline, Contour, Follower
 
 # ----------------------------------------------------------------------
 # Symbols of cams: outlines filled as links, flat faces and stems of followers.

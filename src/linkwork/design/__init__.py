@@ -17,20 +17,22 @@ if TYPE_CHECKING:
         inflection_circle as inflection_circle,
         motor_check as motor_check,
     )
-    from linkwork.design.sensitivity import (
-        is_of_motion as is_of_motion,
-        sensitivity_of_motion as sensitivity_of_motion,
-        sensitivity_of_position as sensitivity_of_position,
-        sensitivity_of_rows as sensitivity_of_rows,
+    from linkwork.design.results import (
+        Counterweight as Counterweight,
+        Counterweights as Counterweights,
+        Flywheel as Flywheel,
+        Harmonics as Harmonics,
+        InflectionCircle as InflectionCircle,
+        MotorCheck as MotorCheck,
     )
-    from linkwork.design.tolerance import (
-        deviations as deviations,
-        tolerance_of as tolerance_of,
-    )
-    from linkwork.synthesis.improvement.improving import improved_designs as improved_designs
-    from linkwork.synthesis.improvement.settings import (
-        Improvement as Improvement,
-        read_goal as read_goal,
+    from linkwork.design.sensitivity import gradient as gradient, sensitivity as sensitivity
+    from linkwork.design.tolerance import tolerance as tolerance
+    from linkwork.design.tolerance_results import (
+        Contribution as Contribution,
+        Sampled as Sampled,
+        Sensitivity as Sensitivity,
+        SensitivityStatus as SensitivityStatus,
+        Tolerance as Tolerance,
     )
 else:
     __getattr__ = loader(__name__)

@@ -11,15 +11,14 @@ from typing import Any
 import click
 import numpy as np
 
-from linkwork.api.mechanism import Mechanism
+from linkwork import design
+from linkwork.core.api.mechanism import Mechanism
 from linkwork.core.commands.options import (
     at_option,
     check_outputs,
     configuration_option,
-    debug_option,
     file_argument,
     input_values,
-    json_option,
     number_or_formula,
     of_option,
     read_mechanism,
@@ -28,8 +27,10 @@ from linkwork.core.commands.options import (
 )
 from linkwork.core.commands.terminal import (
     bad,
+    debug_option,
     fields,
     good,
+    json_option,
     print_json,
     print_lines,
     print_page,
@@ -214,8 +215,8 @@ def sensitivity_command(
     elif values is not None and is_of_motion(of):
         raise InputError(f'"{of}" is a number of a whole motion: leave out --at')
     with progress("differentiating"):
-        found = mechanism.sensitivity(
-            of, values, by=by or None, configuration=configuration, motion=motion
+        found = design.sensitivity(
+            mechanism, of, values, by=by or None, configuration=configuration, motion=motion
         )
     written = write_table(csv, found.table())
     if as_json:
@@ -269,8 +270,8 @@ def tolerance_command(
     mechanism = read_mechanism(file, changes)
     values = input_values(mechanism, at)
     with progress("solving"):
-        found = mechanism.tolerance(
-            of, values, samples=samples, seed=seed, configuration=configuration
+        found = design.tolerance(
+            mechanism, of, values, samples=samples, seed=seed, configuration=configuration
         )
     written = write_table(csv, found.table())
     if as_json:
@@ -343,7 +344,7 @@ def design_command(
         )
     written = []
     if asked["save"] is not None:
-        mechanism.balanced(asked["counterweights"]).save(Path(asked["save"]))
+        design.balanced(mechanism, asked["counterweights"]).save(Path(asked["save"]))
         written = ["", f"Wrote {asked['save']}."]
     if as_json:
         print_json({name: _data(answer) for name, answer in found.items()})
@@ -366,24 +367,33 @@ def _answers(
         with progress("sweeping") as tell:
             motion = mechanism.sweep(configuration=configuration, progress=tell)
     if asked["flywheel"] is not None:
-        yield "flywheel", mechanism.flywheel(asked["flywheel"], motion=motion)
+        yield "flywheel", design.flywheel(mechanism, asked["flywheel"], motion=motion)
     if asked["motor"]:
         stall, speed = asked["motor"]
         yield (
             "motor",
-            mechanism.motor_check(
-                stall=_number(stall), free_speed=speed, rated=asked["rated"], motion=motion
+            design.motor_check(
+                mechanism,
+                stall=_number(stall),
+                free_speed=speed,
+                rated=asked["rated"],
+                motion=motion,
             ),
         )
     if asked["harmonics"] is not None:
-        yield "harmonics", mechanism.harmonics(asked["harmonics"], asked["count"], motion=motion)
+        yield (
+            "harmonics",
+            design.harmonics(mechanism, asked["harmonics"], asked["count"], motion=motion),
+        )
     if asked["counterweights"] is not None:
         with progress("balancing"):
-            yield "counterweights", mechanism.counterweights(asked["counterweights"])
+            yield "counterweights", design.counterweights(mechanism, asked["counterweights"])
     if asked["inflection"] is not None:
         yield (
             "inflection",
-            mechanism.inflection_circle(asked["inflection"], at, configuration=configuration),
+            design.inflection_circle(
+                mechanism, asked["inflection"], at, configuration=configuration
+            ),
         )
 
 

@@ -13,6 +13,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from linkwork.core import motion
+from linkwork.core.api.mechanism import Mechanism
 from linkwork.core.foundation.containers import FrozenDict
 from linkwork.core.foundation.errors import InputError
 from linkwork.core.foundation.names import GROUND
@@ -32,7 +33,7 @@ class _FourBar:
     coupler: str
 
 
-def counterweights(linkage: Linkage, radius: float | Mapping[str, float]) -> Counterweights:
+def counterweights_of(linkage: Linkage, radius: float | Mapping[str, float]) -> Counterweights:
     """The counterweights of crank and rocker, and how the linkage shakes before and after.
 
     Raises
@@ -42,7 +43,7 @@ def counterweights(linkage: Linkage, radius: float | Mapping[str, float]) -> Cou
     """
     weights = tuple(_weights(linkage, radius))
     (force, moment), (force_after, moment_after) = (
-        _shaking(own) for own in (linkage, balanced(linkage, weights))
+        _shaking(own) for own in (linkage, balanced_linkage(linkage, weights))
     )
     mass, length, unit = linkage.mass, linkage.length, linkage.force
     return Counterweights(
@@ -88,7 +89,7 @@ def _weights(linkage: Linkage, radius: float | Mapping[str, float]) -> Iterator[
         )
 
 
-def balanced(linkage: Linkage, weights: tuple[Counterweight, ...]) -> Linkage:
+def balanced_linkage(linkage: Linkage, weights: tuple[Counterweight, ...]) -> Linkage:
     """The linkage with its counterweights."""
     masses = dict(linkage.masses)
     for weight in weights:
@@ -169,3 +170,59 @@ def _inertia(linkage: Linkage, link: str) -> float:
 def _rod(linkage: Linkage, link: str) -> float:
     first, second = linkage.links[link][:2]
     return float(np.abs(_local(linkage, link, second) - _local(linkage, link, first)))
+
+
+def counterweights(mechanism: Mechanism, radius: float | Mapping[str, float]) -> Counterweights:
+    """The counterweights that remove the shaking force of a four-bar.
+
+    The masses alone shake, at the speed of the input or at 1 rad/s: loads, springs and gravity
+    are left out.
+
+    Parameters
+    ----------
+    radius : number or Mapping[str, number]
+        Their distance from the pins on ground [length], by link or for both.
+
+    Raises
+    ------
+    InputError
+        If it is no four-bar with pins and masses.
+
+    Examples
+    --------
+    >>> import linkwork as lw
+    >>> bar = lw.example("four-bar").changed(masses={"coupler": lw.Mass(mass=2, shape="rod")})
+    >>> [weight.link for weight in lw.design.counterweights(bar, radius=20).weights]
+    ['crank', 'rocker']
+    """
+    return counterweights_of(_linkage(mechanism), radius)
+
+
+def balanced(mechanism: Mechanism, radius: float | Mapping[str, float]) -> Mechanism:
+    """A copy whose masses contain the counterweights of :func:`counterweights`.
+
+    Parameters
+    ----------
+    radius : number or Mapping[str, number]
+        As there.
+
+    Raises
+    ------
+    InputError
+        As there.
+
+    Examples
+    --------
+    >>> import linkwork as lw
+    >>> bar = lw.example("four-bar").changed(masses={"coupler": lw.Mass(mass=2, shape="rod")})
+    >>> sorted(lw.design.balanced(bar, radius=20).description.masses)
+    ['coupler', 'crank', 'rocker']
+    """
+    linkage = _linkage(mechanism)
+    return Mechanism(balanced_linkage(linkage, counterweights_of(linkage, radius).weights))
+
+
+def _linkage(mechanism: Mechanism) -> Linkage:
+    if not isinstance(mechanism.description, Linkage):
+        raise InputError("counterweights need a mechanism with points and links")
+    return mechanism.description

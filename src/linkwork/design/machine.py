@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 
 import numpy as np
 
+from linkwork.core.api.mechanism import Mechanism
 from linkwork.core.foundation.arrays import Array
 from linkwork.core.foundation.errors import InputError, UnknownNameError, choices, key_text
 from linkwork.core.foundation.names import GROUND, find_spelling
@@ -18,7 +19,6 @@ from linkwork.core.mechanism.loaded import LoadedBodies
 from linkwork.core.motion.model import Model
 from linkwork.core.motion.rows_between import between_rows
 from linkwork.core.results.motion import Motion
-from linkwork.core.results.position import Position
 from linkwork.core.results.quantities.definition import Group, Solved
 from linkwork.core.results.quantity import Kind
 from linkwork.design.results import Flywheel, Harmonics, InflectionCircle, MotorCheck
@@ -131,17 +131,30 @@ def first_extreme(places: Array, values: Array) -> tuple[float, float]:
 # Flywheel of an input whose effort fluctuates.
 
 
-def flywheel(model: Model, motion: Motion, fluctuation: float) -> Flywheel:
-    """The inertia for a fluctuation (ω_max - ω_min) / ω of the speed at a constant motor torque.
+def flywheel(mechanism: Mechanism, fluctuation: float, *, motion: Motion | None = None) -> Flywheel:
+    """The inertia at the input for a fluctuation of its speed; see
+    :func:`linkwork.design.machine`.
 
-    The energy that the speed takes up and gives back is the integral of mean minus effort; its
-    range ΔE asks for the inertia ΔE / (δ ω²). The efforts are those at the constant mean speed.
+    Parameters
+    ----------
+    fluctuation : float
+        (ω_max - ω_min) / ω_mean.
+    motion : Motion, optional
+        A motion over a whole turn that is solved already, instead of the input's table.
 
     Raises
     ------
     InputError
-        Without a speed, a whole turn or a positive fluctuation.
+        Without a speed or a whole turn.
+
+    Examples
+    --------
+    >>> import linkwork as lw
+    >>> round(lw.design.flywheel(lw.example("crank-press"), 0.05).inertia / 1e6, 1)  # kg m²
+    43.0
     """
+    model = mechanism.model
+    motion = mechanism.sweep() if motion is None else motion
     description = model.description
     if not isinstance(description, LoadedBodies):
         raise InputError("a flywheel needs a mechanism with links and loads")
@@ -185,24 +198,43 @@ _ROUNDING = 1e-12  # of a speed at the end of a table
 
 
 def motor_check(
-    model: Model,
-    motion: Motion,
+    mechanism: Mechanism,
     *,
     motor: Motor | None = None,
     stall: float | None = None,
     free_speed: Number | None = None,
     rated: float | None = None,
+    motion: Motion | None = None,
 ) -> MotorCheck:
-    """The peak and the root mean square of the effort over a turn, or over the whole time of a law,
-    against a motor: the given one, or one with a stall torque and a free speed, or that of the
-    file.
+    """Peak and root mean square of the effort against a motor, by default that of the input.
+
+    Parameters
+    ----------
+    motor : Motor, optional
+        A motor, which may be a table of torques over speeds.
+    stall : float, optional
+        Instead: torque at rest [force · length].
+    free_speed : number or str, optional
+        Speed without torque: ``"1500 rpm"``; the torque falls linearly to it.
+    rated : float, optional
+        Torque that the motor gives without end, for the root mean square.
+    motion : Motion, optional
+        A motion over a whole turn that is solved already, instead of the input's table.
 
     Raises
     ------
     InputError
-        Without a motor, a speed of the input, a law or a whole turn; for several inputs, a motor
-        without torque or speed, or with a table that ends below a speed.
+        Without a motor, a speed or a whole turn, and beyond the motor's table.
+
+    Examples
+    --------
+    >>> import linkwork as lw
+    >>> press = lw.example("crank-press")
+    >>> lw.design.motor_check(press, stall=9e5, free_speed="3000 rpm").fits
+    False
     """
+    model = mechanism.model
+    motion = mechanism.sweep() if motion is None else motion
     column, timed = column_of(model, "a motor check"), model.description.timed
     driven = model.untimed or model
     kind, scale = driven.motion_quantities.names.inputs[column], float(driven.input_scale[0])
@@ -283,16 +315,33 @@ def _curve(model: Model, motor: Motor, kind: Kind, speeds: Array) -> Callable[[A
 # Harmonics of a quantity over a turn.
 
 
-def harmonics(model: Model, motion: Motion, of: str, count: int = 8) -> Harmonics:
-    """The Fourier sum of a quantity over one turn of the input.
+def harmonics(
+    mechanism: Mechanism, of: str, count: int = 8, *, motion: Motion | None = None
+) -> Harmonics:
+    """The Fourier sum of a quantity over a turn of the input.
 
-    Its coefficients are integrals, to rounding also of quantities that jump between rows.
+    Parameters
+    ----------
+    of : str
+        A quantity: ``crank.effort``, ``shaking.x``, …
+    count : int
+        The number of harmonics.
+    motion : Motion, optional
+        A motion over a whole turn that is solved already, instead of the input's table.
 
     Raises
     ------
     UnknownNameError, InputError
-        If there is no such quantity or no whole turn, or its rows are too few.
+        If there is no such quantity, or no whole turn.
+
+    Examples
+    --------
+    >>> import linkwork as lw
+    >>> lw.design.harmonics(lw.example("crank-press"), "height", 3).amplitude.round(3)
+    array([60.   ,  2.263,  0.   ])
     """
+    model = mechanism.model
+    motion = mechanism.sweep() if motion is None else motion
     turn = whole_turn(model, motion, of)
     rows = len(turn.value) - 1
     if not 1 <= count < rows / 2.0:
@@ -322,17 +371,37 @@ _STILL = 1e-12  # rad per longest link: a link that does not turn
 
 
 def inflection_circle(
-    model: Model, position: Position, link: str | None = None
+    mechanism: Mechanism,
+    link: str | None = None,
+    at: float | Mapping[str, float] | None = None,
+    *,
+    configuration: str | None = None,
 ) -> InflectionCircle:
-    """The inflection circle from the derivatives of one point by the angle of the link.
+    """The points of a link whose paths are straight to the second order at a position.
+
+    Parameters
+    ----------
+    link : str, optional
+        By default the only link that ground does not carry.
+    at : number or Mapping[str, number], optional
+        Input value(s) in file units.
+    configuration : str, optional
+        As in :meth:`Mechanism.solve`.
 
     Raises
     ------
-    UnknownNameError
-        If there is no such link.
-    InputError
-        If the link does not turn there, or there is no position.
+    UnknownNameError, InputError
+        If there is no such link, or it does not turn there.
+
+    Examples
+    --------
+    >>> import linkwork as lw
+    >>> circle = lw.design.inflection_circle(lw.example("rolling-wheel"), "wheel", at=-120)
+    >>> round(circle.diameter, 9)
+    40.0
     """
+    model = mechanism.model
+    position = mechanism.solve(at, configuration=configuration)
     description = model.description
     if not isinstance(description, LoadedBodies):
         raise InputError("an inflection circle needs a mechanism with links")

@@ -47,7 +47,7 @@ class Flywheel:
     Examples
     --------
     >>> import linkwork as lw
-    >>> wheel = lw.example("crank-press").flywheel(0.05)
+    >>> wheel = lw.design.flywheel(lw.example("crank-press"), 0.05)
     >>> round(wheel.energy), wheel.units["inertia"]
     (339390, 'kg·mm²')
     """
@@ -103,7 +103,7 @@ class MotorCheck:
     Examples
     --------
     >>> import linkwork as lw
-    >>> motor = lw.example("crank-press").motor_check(stall=2e6, free_speed="1500 rpm")
+    >>> motor = lw.design.motor_check(lw.example("crank-press"), stall=2e6, free_speed="1500 rpm")
     >>> motor.fits, round(motor.available)
     (True, 1840000)
     """
@@ -164,7 +164,7 @@ class Harmonics:
     Examples
     --------
     >>> import linkwork as lw
-    >>> found = lw.example("crank-press").harmonics("shaking.y", 2)
+    >>> found = lw.design.harmonics(lw.example("crank-press"), "shaking.y", 2)
     >>> found.amplitude.round(1)
     array([4584.2, 4489.6])
     """
@@ -215,7 +215,7 @@ class Counterweight:
     --------
     >>> import linkwork as lw
     >>> bar = lw.example("four-bar").changed(masses={"coupler": lw.Mass(mass=2, shape="rod")})
-    >>> [weight.link for weight in bar.counterweights(radius=20).weights]
+    >>> [weight.link for weight in lw.design.counterweights(bar, radius=20).weights]
     ['crank', 'rocker']
     """
 
@@ -243,7 +243,7 @@ class Counterweights:
     --------
     >>> import linkwork as lw
     >>> bar = lw.example("four-bar").changed(masses={"coupler": lw.Mass(mass=2, shape="rod")})
-    >>> balanced = bar.counterweights(radius=20)
+    >>> balanced = lw.design.counterweights(bar, radius=20)
     >>> balanced.force[1] < 1e-12 * balanced.force[0]
     True
     """
@@ -287,7 +287,7 @@ class InflectionCircle:
     Examples
     --------
     >>> import linkwork as lw
-    >>> circle = lw.example("elliptic-trammel").inflection_circle(at=40)
+    >>> circle = lw.design.inflection_circle(lw.example("elliptic-trammel"), at=40)
     >>> round(circle.diameter, 6)  # the length of the rod
     30.0
     """

@@ -8,6 +8,7 @@ from typing import Any, cast
 
 import numpy as np
 
+from linkwork.core.api.mechanism import Mechanism
 from linkwork.core.foundation.arrays import AnyArray, Array
 from linkwork.core.foundation.errors import InputError, UnknownNameError
 from linkwork.core.mechanism.varied_numbers import VariedNumber
@@ -349,3 +350,89 @@ def _limit(model: Model, motion: Motion, of: str) -> tuple[float, str, list[_Par
     one = np.ones(1) / model.input_scale[lead]
     part = _Part(rows.v[[row]], RowSlopes(value=one), None, fold=True)
     return nearest.input, model.input_units[name], [part]
+
+
+def sensitivity(
+    mechanism: Mechanism,
+    of: str,
+    at: float | Mapping[str, float] | None = None,
+    *,
+    by: Iterable[str] | None = None,
+    configuration: str | None = None,
+    motion: Motion | None = None,
+) -> Sensitivity:
+    """The derivatives of a quantity by the numbers of the mechanism, exact to rounding.
+
+    With ``at`` those of a position at this input; without it those in all rows of the input's
+    table. A number of a whole motion (``stroke(d)``, ``path_length(P)``, ``limit.upper`` for
+    the dead point that ends the motion) has one derivative by each number.
+
+    Parameters
+    ----------
+    of : str
+        A quantity, a rate, or a number of a motion, see ``linkwork quantities``.
+    at : number or Mapping[str, number], optional
+        Input value(s) in file units.
+    by : iterable of str, optional
+        Numbers that a family can vary: ``"O2 A"``, ``"O4.x"``, ``"a2"``, ``"d.offset"``; by
+        default all that the file writes as plain numbers.
+    configuration : str, optional
+        As in :meth:`Mechanism.solve`.
+    motion : Motion, optional
+        Instead of the table: a motion of this mechanism, solved already.
+
+    Returns
+    -------
+    Sensitivity
+        Its ``status`` says whether the derivatives exist.
+
+    Raises
+    ------
+    UnknownNameError, InputError
+        If a name is not known, or a number cannot vary alone.
+
+    Examples
+    --------
+    >>> import linkwork as lw
+    >>> found = lw.design.sensitivity(lw.example("slider-crank"), "d", at=60)
+    >>> found.effective[0], round(found["B A"], 6)
+    ('B A', 1.123196)
+    """
+    if at is None and (mechanism.description.inputs or motion is not None or is_of_motion(of)):
+        rows = mechanism.sweep(configuration=configuration) if motion is None else motion
+        if is_of_motion(of):
+            return sensitivity_of_motion(mechanism.model, rows, of, by)
+        return sensitivity_of_rows(mechanism.model, rows, of, by)
+    if is_of_motion(of):
+        raise InputError(f'"{of}" is a number of a whole motion: leave out at')
+    position = mechanism.solve(at, configuration=configuration)
+    return sensitivity_of_position(mechanism.model, position, of, by)
+
+
+def gradient(
+    mechanism: Mechanism,
+    of: str,
+    *,
+    by: Iterable[str] | None = None,
+    at: float | Mapping[str, float] | None = None,
+    configuration: str | None = None,
+    motion: Motion | None = None,
+) -> dict[str, Array | float]:
+    """The derivatives of :func:`sensitivity` by name, (R,) each, or numbers; NaN where there is
+    none.
+
+    Parameters
+    ----------
+    of, by, at, configuration, motion
+        As in :func:`sensitivity`.
+
+    Examples
+    --------
+    >>> import linkwork as lw
+    >>> crank = lw.example("slider-crank")
+    >>> rows = lw.design.gradient(crank, "d", by=["B A"])["B A"]
+    >>> rows.shape, round(float(rows[60]), 6)
+    ((361,), 1.123196)
+    """
+    found = sensitivity(mechanism, of, at, by=by, configuration=configuration, motion=motion)
+    return {name: found[name] for name in found.derivatives}

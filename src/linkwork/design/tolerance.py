@@ -9,6 +9,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from linkwork import families as batch
+from linkwork.core.api.mechanism import Mechanism
 from linkwork.core.foundation.arrays import Array
 from linkwork.core.foundation.errors import InputError, UnknownNameError, choices
 from linkwork.core.foundation.names import find_spelling
@@ -26,6 +27,7 @@ from linkwork.core.results.motion import Motion
 from linkwork.core.results.position import Position
 from linkwork.design.sensitivity import (
     LIMITS,
+    is_of_motion,
     play_of_motion,
     play_of_position,
     sensitivity_of_motion,
@@ -41,7 +43,7 @@ from linkwork.design.tolerance_results import (
 )
 from linkwork.families.sampling import Normal, random
 
-__all__ = ["Deviations", "deviations", "tolerance_of"]
+__all__ = ["Deviations", "stated_deviations", "tolerance_of"]
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -52,7 +54,7 @@ class Deviations:
     clearances: Mapping[str, float]
 
 
-def deviations(
+def stated_deviations(
     model: Model,
     numbers: Mapping[str, float] | None = None,
     clearances: Mapping[str, float] | None = None,
@@ -253,3 +255,65 @@ def _at_one_row(model: Model, position: Position) -> Model:
         for which, x in zip(description.inputs, model.equations.inputs, strict=True)
     )
     return model_of(replace(description, inputs=rows)).from_position(position)
+
+
+def tolerance(
+    mechanism: Mechanism,
+    of: str,
+    at: float | Mapping[str, float] | None = None,
+    *,
+    deviations: Mapping[str, float] | None = None,
+    clearances: Mapping[str, float] | None = None,
+    samples: int = 0,
+    seed: int = 1,
+    configuration: str | None = None,
+    motion: Motion | None = None,
+) -> Tolerance:
+    """What deviations of numbers and clearances of pins do to a quantity.
+
+    Worst case, root sum square and the share of each are of first order; ``samples`` random
+    designs are solved too, as a family.
+
+    Parameters
+    ----------
+    of : str
+        A quantity at a position, or a number of a whole motion: ``stroke(d)``.
+    at : number or Mapping[str, number], optional
+        Input value(s) in file units; by default those of the guess.
+    deviations : Mapping[str, number], optional
+        Standard deviations of numbers; by default those in the file's ``[tolerances]``.
+    clearances : Mapping[str, number], optional
+        Differences of the radii of hole and pin, by point; by default ``[clearances]``.
+    samples : int
+        Number of random designs.
+    seed : int
+        Equal seeds draw equal designs.
+    configuration, motion
+        As in :func:`sensitivity`.
+
+    Returns
+    -------
+    Tolerance
+
+    Raises
+    ------
+    UnknownNameError, InputError
+        If a name is not known, a deviation is negative, or none is given.
+
+    Examples
+    --------
+    >>> import linkwork as lw
+    >>> crank = lw.example("slider-crank")
+    >>> found = lw.design.tolerance(crank, "d", at=60, deviations={"O2 A": 0.02, "B A": 0.05})
+    >>> round(found.worst_case, 6), found.contributions[0].name
+    (0.057301, 'B A')
+    """
+    given = stated_deviations(mechanism.model, deviations, clearances)
+    solved: Motion | Position
+    if is_of_motion(of):
+        if at is not None:
+            raise InputError(f'"{of}" is a number of a whole motion: leave out at')
+        solved = mechanism.sweep(configuration=configuration) if motion is None else motion
+    else:
+        solved = mechanism.solve(at, configuration=configuration)
+    return tolerance_of(mechanism.model, solved, of, given, samples=samples, seed=seed)

@@ -8,8 +8,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from linkwork import wings
 from linkwork.core.foundation.arrays import AnyArray, Array
-from linkwork.core.foundation.containers import FrozenDict, presenter, read_only
+from linkwork.core.foundation.containers import FrozenDict, read_only
 from linkwork.core.foundation.errors import UnknownNameError, choices
 from linkwork.core.foundation.names import find_spelling
 from linkwork.core.foundation.statuses import CodedEnum
@@ -28,7 +29,7 @@ class SensitivityStatus(CodedEnum):
     Examples
     --------
     >>> import linkwork as lw
-    >>> lw.example("slider-crank").sensitivity("d", at=60).status.name
+    >>> lw.design.sensitivity(lw.example("slider-crank"), "d", at=60).status.name
     'FOUND'
     """
 
@@ -75,7 +76,7 @@ class Sensitivity:
     Examples
     --------
     >>> import linkwork as lw
-    >>> found = lw.example("slider-crank").sensitivity("d", at=60, by=["O2 A", "B A"])
+    >>> found = lw.design.sensitivity(lw.example("slider-crank"), "d", at=60, by=["O2 A", "B A"])
     >>> round(found["O2 A"], 6), round(found["B A"], 6)
     (0.057082, 1.123196)
     """
@@ -151,7 +152,7 @@ class Sensitivity:
 
     def _repr_html_(self) -> str:
         """A short table, for notebooks."""
-        return presenter(Sensitivity._repr_html_)(self)
+        return wings.use("app").sensitivity_html(self)
 
 
 def _size(rows: Array) -> float:
@@ -219,7 +220,7 @@ class Contribution:
     --------
     >>> import linkwork as lw
     >>> crank = lw.example("slider-crank")
-    >>> crank.tolerance("d", at=60, deviations={"B A": 0.05}).contributions[0].name
+    >>> lw.design.tolerance(crank, "d", at=60, deviations={"B A": 0.05}).contributions[0].name
     'B A'
     """
 
@@ -254,7 +255,7 @@ class Sampled:
     --------
     >>> import linkwork as lw
     >>> crank = lw.example("slider-crank")
-    >>> found = crank.tolerance("d", at=60, deviations={"B A": 0.05}, samples=1000)
+    >>> found = lw.design.tolerance(crank, "d", at=60, deviations={"B A": 0.05}, samples=1000)
     >>> found.sampled.found
     1000
     """
@@ -299,7 +300,7 @@ class Tolerance:
     --------
     >>> import linkwork as lw
     >>> deviations = {"O2 A": 0.02, "B A": 0.05, "d.offset": 0.03}
-    >>> found = lw.example("slider-crank").tolerance("d", at=60, deviations=deviations)
+    >>> found = lw.design.tolerance(lw.example("slider-crank"), "d", at=60, deviations=deviations)
     >>> round(found.root_sum_square, 6), round(found.contributions[0].share, 3)
     (0.058229, 0.93)
     """
@@ -349,7 +350,7 @@ class Tolerance:
 
     def _repr_html_(self) -> str:
         """A short table, for notebooks."""
-        return presenter(Tolerance._repr_html_)(self)
+        return wings.use("app").tolerance_html(self)
 
 
 def tolerance_summary(found: Tolerance) -> Summary:

@@ -12,12 +12,14 @@ from time import monotonic
 
 import click
 
-from linkwork.core.commands.options import columns_option, debug_option, json_option
+from linkwork.core.commands.options import columns_option
 from linkwork.core.commands.terminal import (
     WIDTH,
     bad,
     check_interrupt,
+    debug_option,
     fields,
+    json_option,
     print_json,
     print_lines,
     progress,

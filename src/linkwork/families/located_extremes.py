@@ -11,9 +11,9 @@ import numpy as np
 from linkwork.core.foundation.arrays import Array, BoolArray, IndexArray
 from linkwork.core.foundation.rounding import EPSILON, EQUAL_ROWS
 from linkwork.core.foundation.units import FULL_TURN
-from linkwork.core.numerics.interpolated_peak import interpolated_peaks, lagrange_weights
 from linkwork.core.results.quantities.definition import CLOSE_ROWS
 from linkwork.core.results.quantity import Kind
+from linkwork.families.interpolated_peak import interpolated_peaks, lagrange_weights
 
 _ROWS = 9  # of a polynomial
 

@@ -11,16 +11,14 @@ from typing import Any
 import click
 import numpy as np
 
-from linkwork.api.mechanism import Mechanism
+from linkwork.core.api.mechanism import Mechanism
 from linkwork.core.commands.options import (
     at_option,
     check_outputs,
     columns_option,
     configuration_option,
-    debug_option,
     file_argument,
     input_values,
-    json_option,
     number_or_formula,
     read_mechanism,
     set_option,
@@ -30,8 +28,10 @@ from linkwork.core.commands.options import (
 from linkwork.core.commands.sweep import check_points, failure_line, range_lines, write_plot
 from linkwork.core.commands.terminal import (
     bad,
+    debug_option,
     fields,
     good,
+    json_option,
     print_json,
     print_lines,
     print_page,
@@ -55,6 +55,7 @@ from linkwork.core.results.listing.motion_listing import (
 )
 from linkwork.core.results.motion import Motion
 from linkwork.core.results.tables import Table
+from linkwork.forces.functions import equilibria, stalls
 from linkwork.forces.listing import (
     finite_forces,
     force_fields,
@@ -251,14 +252,14 @@ def forces_command(
     if plot is not None and not moves:
         raise InputError(f'"{mechanism.name}" has no input, so that --plot has no motion to show')
     motion = None
-    stalls: tuple[Stall, ...] = ()
+    locked: tuple[Stall, ...] = ()
     if values is None and moves:
         with progress("sweeping") as tell:
             motion = mechanism.sweep(configuration=configuration, progress=tell)
         found = mechanism.forces(motion=motion)
         if ForceStatus.SELF_LOCKING in found.statuses:
             with progress("locating stalls"):
-                stalls = mechanism.stalls(motion=motion, configuration=configuration)
+                locked = stalls(mechanism, motion=motion, configuration=configuration)
     else:
         found = mechanism.forces(values, configuration=configuration)
     table = found.table(*names)
@@ -268,12 +269,12 @@ def forces_command(
     if plot is not None and motion is not None:
         written.append(write_plot(motion, names or found.efforts, plot))
     if as_json:
-        print_json(reactions_data(found, table, stalls))
+        print_json(reactions_data(found, table, locked))
     elif csv != "-":
         page = (
             position_forces_lines(found, names)
             if motion is None
-            else motion_forces_lines(found, motion, names, stalls)
+            else motion_forces_lines(found, motion, names, locked)
         )
         print_page(page, written)
     if motion is not None and not motion.found.all():
@@ -511,7 +512,7 @@ def _list_equilibria(
     mechanism: Mechanism, start: dict[str, float] | None, change_points: str, as_json: bool
 ) -> None:
     with progress("looking for equilibria"):
-        found = mechanism.equilibria(start, change_points=change_points)
+        found = equilibria(mechanism, start, change_points=change_points)
     if as_json:
         print_json({"equilibria": [asdict(each) for each in found]})
     else:

@@ -3,90 +3,23 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass
 
 import numpy as np
 
+from linkwork.core.drawing.annotations import Force
 from linkwork.core.foundation.arrays import AnyArray, Array, BoolArray
 from linkwork.core.foundation.containers import FrozenDict, read_only
-from linkwork.core.foundation.errors import InputError, UnknownNameError, choices, internal
+from linkwork.core.foundation.errors import UnknownNameError, internal
 from linkwork.core.foundation.names import find_spelling
 from linkwork.core.foundation.statuses import CodedEnum
-from linkwork.core.foundation.values import check_values
 from linkwork.core.results.quantities.registry import nearest
 from linkwork.core.results.quantity import Kind
 from linkwork.core.results.tables import Summary, Table
 
 # ----------------------------------------------------------------------
 # Forces at points, for drawings.
-
-
-@dataclass(frozen=True, kw_only=True)
-class Force:
-    """A force at a point, for drawings and pages; it is given, not computed.
-
-    Parameters
-    ----------
-    at : str
-        The name of the point.
-    x, y : float
-        Components along the axes of the ground, in ``unit``.
-    unit : str
-        For example ``N``; all forces of a picture have the same unit.
-
-    Raises
-    ------
-    InputError
-        If a component is not finite.
-
-    Examples
-    --------
-    >>> import linkwork as lw
-    >>> lw.Force(at="B", x=0, y=-981, unit="N")
-    Force(at='B', x=0, y=-981, unit='N')
-    """
-
-    at: str
-    x: float
-    y: float
-    unit: str = ""
-
-    def __post_init__(self) -> None:
-        check_values(self)
-        if not (math.isfinite(self.x) and math.isfinite(self.y)):
-            raise InputError(f"the force at {self.at} is not finite: {self.x:g}, {self.y:g}")
-
-
-def force_unit(forces: Iterable[Force]) -> str:
-    """The unit that all forces have.
-
-    Raises
-    ------
-    InputError
-        If they have different ones.
-    """
-    units = dict.fromkeys(force.unit for force in forces)
-    if len(units) > 1:
-        listed = ", ".join(unit or "none" for unit in units)
-        raise InputError(f"forces of one picture need one unit, these have several: {listed}")
-    return next(iter(units), "")
-
-
-def check_forces(forces: Iterable[Force], points: Iterable[str]) -> None:
-    """Refuse forces at points that are not there, and units that differ.
-
-    Raises
-    ------
-    UnknownNameError, InputError
-    """
-    known, every = tuple(points), tuple(forces)
-    for force in every:
-        if force.at not in known:
-            raise UnknownNameError(
-                f'there is no point "{force.at}" for a force {choices("points", known, force.at)}'
-            )
-    force_unit(every)
 
 
 # ----------------------------------------------------------------------
@@ -124,7 +57,7 @@ class Equilibrium:
     ...     inputs=lw.Input(link="bar"), masses={"bar": lw.Mass(mass=1, center=(1, 0))},
     ...     gravity=lw.Gravity(),
     ... )
-    >>> [(round(each.input), each.stable) for each in pendulum.equilibria()]
+    >>> [(round(each.input), each.stable) for each in lw.forces.equilibria(pendulum)]
     [(-90, True), (90, False)]
     """
 

@@ -30,7 +30,7 @@ class Stall:
     Examples
     --------
     >>> import linkwork as lw
-    >>> [stall.proved for stall in lw.example("crank-press").stalls()]
+    >>> [stall.proved for stall in lw.forces.stalls(lw.example("crank-press"))]
     []
     """
 

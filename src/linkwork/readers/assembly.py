@@ -49,7 +49,7 @@ class LeftOut:
     Examples
     --------
     >>> import linkwork as lw
-    >>> print(lw.LeftOut(what="force", places=("line 3", "line 7", "line 9")))
+    >>> print(lw.readers.LeftOut(what="force", places=("line 3", "line 7", "line 9")))
     line 3 and 2 more: force
     """
 
@@ -505,7 +505,7 @@ class Exported:
     Examples
     --------
     >>> import linkwork as lw
-    >>> made = lw.example("four-bar").exported("pyslvs", at=0)
+    >>> made = lw.readers.exported(lw.example("four-bar"), "pyslvs", at=0)
     >>> made.text[:41]
     'M[J[R, P[0.0, 0.0], L[ground, crank]], J['
     >>> print(made.left_out[0])

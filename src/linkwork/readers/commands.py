@@ -4,17 +4,18 @@ from __future__ import annotations
 
 import click
 
-from linkwork.api.foreign import Imported, imported
-from linkwork.core.commands.options import (
-    check_outputs,
+from linkwork.core.commands.options import check_outputs, file_argument, write_text
+from linkwork.core.commands.terminal import (
     debug_option,
-    file_argument,
     json_option,
-    write_text,
+    print_json,
+    print_lines,
+    title_lines,
+    wrapped,
 )
-from linkwork.core.commands.terminal import print_json, print_lines, title_lines, wrapped
 from linkwork.core.textfile.writer import write_text as text_of
 from linkwork.readers.formats import FORMATS
+from linkwork.readers.imported import Imported, imported
 
 __all__ = ["import_command"]
 

@@ -10,16 +10,14 @@ from pathlib import Path
 
 import click
 
-from linkwork.api.designs_folder import FolderOptions, check_folder, keeps_earlier, write_designs
-from linkwork.api.path_atlas import NearPath, PathAtlas
-from linkwork.api.synthesis import Task
-from linkwork.api.task_copy import task_copy
-from linkwork.core.commands.options import check_outputs, debug_option, json_option, text_of_source
+from linkwork.core.commands.options import check_outputs, text_of_source
 from linkwork.core.commands.terminal import (
     answer_interrupt,
     bad,
+    debug_option,
     fields,
     good,
+    json_option,
     print_json,
     print_lines,
     progress,
@@ -32,9 +30,18 @@ from linkwork.core.foundation.errors import InputError, MechanismError, Mechanis
 from linkwork.core.foundation.files import OwnFiles, as_path
 from linkwork.core.results.listing.motion_listing import Column, rounded_down, significant
 from linkwork.core.textfile.writer import save
+from linkwork.synthesis.atlas.near_paths import NearPath, PathAtlas
 from linkwork.synthesis.defects.verdicts import DefectKind, JudgedDesign
+from linkwork.synthesis.designs_folder import (
+    FolderOptions,
+    check_folder,
+    keeps_earlier,
+    write_designs,
+)
 from linkwork.synthesis.solvers.result import Synthesis, front_of, goal_misses
 from linkwork.synthesis.solvers.solving import advice_of, remarks_on
+from linkwork.synthesis.task_copy import task_copy
+from linkwork.synthesis.task_objects import Task
 from linkwork.synthesis.tasks.curve_file import read_curve
 
 # ----------------------------------------------------------------------

@@ -8,6 +8,10 @@ from linkwork.core.foundation.loading import loader
 
 if TYPE_CHECKING:
     from linkwork.core.results.tables import csv_lines as csv_lines, csv_text as csv_text
+    from linkwork.writers.charts.matplotlib_plot import (
+        plot_circuits as plot_circuits,
+        plot_motion as plot_motion,
+    )
     from linkwork.writers.code.languages import code_of as code_of, language_of as language_of
     from linkwork.writers.plates.files import (
         check_plate_file as check_plate_file,
@@ -20,6 +24,7 @@ if TYPE_CHECKING:
         Template as Template,
         template_of as template_of,
     )
+    from linkwork.writers.report.gathering import report as report
     from linkwork.writers.report.motion_sections import (
         check_template as check_template,
         quantities_of as quantities_of,
@@ -36,6 +41,14 @@ if TYPE_CHECKING:
         WrittenWorkbook as WrittenWorkbook,
         check_xlsxwriter as check_xlsxwriter,
         workbook_of as workbook_of,
+    )
+    from linkwork.writers.writing import (
+        Writer as Writer,
+        plates as plates,
+        program as program,
+        robot as robot,
+        workbook as workbook,
+        write as write,
     )
 else:
     __getattr__ = loader(__name__)

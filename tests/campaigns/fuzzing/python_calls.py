@@ -45,7 +45,7 @@ _FIELDS = (
     "equations", "ground", "masses", "loads", "gravity", "mass", "force", "questions",
 )  # fmt: skip
 _PARTS = (
-    lw.Belt, lw.Cam, lw.Curve, lw.Cylinder, lw.Force, lw.Gear, lw.Input, lw.NewtonOptions,
+    lw.Belt, lw.Cam, lw.Curve, lw.Cylinder, lw.forces.Force, lw.Gear, lw.Input, lw.NewtonOptions,
     lw.Gravity, lw.Load, lw.Mass, lw.NoncircularGear, lw.Question, lw.Rack, lw.Rolling, lw.Segment,
     lw.Slider, lw.Slot, lw.Spring, lw.Weld,
 )  # fmt: skip
@@ -126,7 +126,9 @@ def _field_of(part: type) -> str:
     }
     return named.get(
         part.__name__,
-        f"{part.__name__.lower()}s" if part not in (lw.Force, lw.NewtonOptions, lw.Segment) else "",
+        f"{part.__name__.lower()}s"
+        if part not in (lw.forces.Force, lw.NewtonOptions, lw.Segment)
+        else "",
     )
 
 

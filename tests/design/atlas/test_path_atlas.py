@@ -79,7 +79,7 @@ def test_a_path_of_the_atlas_is_found_again_and_drawn(place: int) -> None:
     original = lw.loads(family.mechanism)
     path = original.family({k: np.array([v]) for k, v in numbers.items()}).sweep().trace("P")[0]
     wanted = np.roll(((2.0 - 1.0j) * path[:-1] + 300.0).conj(), 20)
-    near = lw.PathAtlas.shipped().nearest(wanted, 2)[0]
+    near = lw.synthesis.PathAtlas.shipped().nearest(wanted, 2)[0]
     assert near.is_mirrored
     assert near.numbers == numbers
     assert near.distance < 2e-3
@@ -110,7 +110,7 @@ def test_offsets_of_sliders_are_placed_with_the_mechanism() -> None:
     assert near.is_mirrored
     placed, gap = placed_on_curve(near, wanted, "placed")
     assert gap < 1e-9 * np.abs(wanted).max()
-    motion = lw.api.Mechanism(placed).sweep()
+    motion = lw.Mechanism(placed).sweep()
     assert np.abs(motion.trace("P")[:, None] - wanted).min(axis=0).max() < 1e-6
 
 
@@ -227,7 +227,7 @@ def test_an_index_is_refused_before_stores_are_read(
 
 
 def test_curves_and_files_that_are_none_are_refused(tmp_path: Path) -> None:
-    atlas = lw.PathAtlas.shipped()
+    atlas = lw.synthesis.PathAtlas.shipped()
     with pytest.raises(lw.InputError, match="needs 5 points or more"):
         atlas.nearest([(0, 0), (1, 0), (1, 1), (0, 1), (0, 0)])
     with pytest.raises(lw.InputError, match="the curve is one point"):
@@ -250,9 +250,9 @@ def test_curves_and_files_that_are_none_are_refused(tmp_path: Path) -> None:
     broken = tmp_path / "broken.npz"
     broken.write_bytes(SHIPPED.read_bytes()[:1000])
     with pytest.raises(lw.InputError, match="is no atlas of paths"):
-        lw.PathAtlas.load(broken)
+        lw.synthesis.PathAtlas.load(broken)
     with pytest.raises(lw.InputError, match="there is no atlas"):
-        lw.PathAtlas.load(tmp_path / "missing.npz")
+        lw.synthesis.PathAtlas.load(tmp_path / "missing.npz")
     assert isinstance(read_atlas().families[0], AtlasFamily)
     assert SHIPPED.stat().st_size < 5e6
 

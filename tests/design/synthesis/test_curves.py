@@ -30,15 +30,15 @@ _EIGHTEEN = [
 ]  # fmt: skip
 
 
-def _timed(**tables: Any) -> lw.Synthesis:
+def _timed(**tables: Any) -> lw.synthesis.Synthesis:
     inputs = [20.0 * k for k in range(18)]
     return lw.Task.path(_EIGHTEEN, inputs=inputs, mechanism="four-bar", **tables).solve()
 
 
-def _squares(found: lw.Synthesis) -> float:
+def _squares(found: lw.synthesis.Synthesis) -> float:
     """The sum of squares of the best delivered design, from its mechanism alone."""
     design = found.delivered[0]
-    mechanism = lw.api.Mechanism(design.linkage)
+    mechanism = lw.Mechanism(design.linkage)
     places = [mechanism.solve(at=a).points["P"] for a in design.inputs]
     return float(
         sum(np.hypot(x - u, y - v) ** 2 for (x, y), (u, v) in zip(places, _EIGHTEEN, strict=True))
@@ -283,7 +283,7 @@ def test_a_repeated_first_point_of_a_closed_curve_counts_once(tmp_path: Path, ti
     head += f'file = "foot.csv"\ntiming = "{timing}"\n'
     task = tmp_path / "task.toml"
 
-    def solved(more: str, closed: str = "") -> lw.Synthesis:
+    def solved(more: str, closed: str = "") -> lw.synthesis.Synthesis:
         (tmp_path / "foot.csv").write_text("\n".join([*rows, more]))
         task.write_text(head + (f'closed = "{closed}"\n' if closed else ""))
         return lw.Task.load(task).solve()
@@ -300,7 +300,7 @@ def test_a_repeated_first_point_of_a_closed_curve_counts_once(tmp_path: Path, ti
         assert len(solved("0.5,1.1,350").designs[0].inputs) == 19
 
 
-def _arch(**tables: Any) -> lw.Synthesis:
+def _arch(**tables: Any) -> lw.synthesis.Synthesis:
     """Twelve points of an arch, 500 by 120: slender four-bars grow without bound on it."""
     turn = np.linspace(0.0, np.pi, 12)
     points = [(250.0 - 250.0 * np.cos(a), 120.0 * np.sin(a) ** 0.8) for a in turn]
@@ -341,7 +341,7 @@ def test_fits_that_end_at_the_usual_bound_and_cognates_are_named() -> None:
     pair = [int(number) for number in re.findall(r"\d+", kin)[:2]]
     assert pair != [1, 2]
     one, other = (
-        lw.api.Mechanism(found.of_loops[number - 1].linkage).sweep(certify=False).trace("P")
+        lw.Mechanism(found.of_loops[number - 1].linkage).sweep(certify=False).trace("P")
         for number in pair
     )
     assert np.abs(one[:, None] - other).min(axis=1).max() < 5.0
@@ -378,7 +378,7 @@ def test_a_closed_curve_is_driven_through_a_whole_turn(tmp_path: Path) -> None:
     free = lw.Task.load(tmp_path / "free.toml").solve()
     best = min(free.delivered, key=lambda design: design.error)
     assert best.error < 1e-6
-    motion = lw.api.Mechanism(best.linkage).sweep()
+    motion = lw.Mechanism(best.linkage).sweep()
     inputs = next(iter(motion.inputs.values()))
     assert abs(inputs[-1] - inputs[0]) == pytest.approx(360.0)
     (tmp_path / "held.toml").write_text(
@@ -387,4 +387,4 @@ def test_a_closed_curve_is_driven_through_a_whole_turn(tmp_path: Path) -> None:
     held = lw.Task.load(tmp_path / "held.toml").solve()
     same = [d for d in held.designs if d.error < 1e-6]
     assert same
-    assert all(lw.DefectKind.OBSTACLE in design.kinds for design in same)
+    assert all(lw.synthesis.DefectKind.OBSTACLE in design.kinds for design in same)

@@ -70,7 +70,7 @@ def test_a_position_beyond_a_dead_point_by_rounding_is_not_decided() -> None:
     locked, at = complex(motion.trace("P")[row]), float(motion["left"][row])
     task = lw.Task.path([rocker.solve(at=60).points["P"], (locked.real, locked.imag)])
     (defect,) = task.defects_of(rocker, (60, at + 1e-7), point="P")
-    assert (defect.kind, defect.between) == (lw.DefectKind.NOT_PROVED, None)
+    assert (defect.kind, defect.between) == (lw.synthesis.DefectKind.NOT_PROVED, None)
     assert defect.message == "not proved: position 2 is at a dead point"
 
 
@@ -78,7 +78,7 @@ def test_an_input_that_no_position_has_is_out_of_range() -> None:
     rocker = lw.example("chebyshev")
     places = [*_at(rocker, "P", 60, 70), (0.0, 0.0)]
     (defect,) = lw.Task.path(places).defects_of(rocker, (60, 70, 150), point="P")
-    assert defect.kind is lw.DefectKind.RANGE
+    assert defect.kind is lw.synthesis.DefectKind.RANGE
     assert defect.message == "no position of the mechanism has the input of position 3"
 
 
@@ -88,7 +88,7 @@ def test_a_position_off_the_only_known_circuit_is_not_decided() -> None:
     assert lw.Task.path(places).defects_of(slot, (40, 90), point="B") == ()
     places[1] = places[1][0] + 1e-3, places[1][1]
     (defect,) = lw.Task.path(places).defects_of(slot, (40, 90), point="B")
-    assert defect.kind is lw.DefectKind.NOT_PROVED
+    assert defect.kind is lw.synthesis.DefectKind.NOT_PROVED
     assert defect.message == (
         "not proved: position 2 is not on the circuit of the guess, and the configurations of "
         "these equations cannot be listed"
@@ -154,13 +154,13 @@ def test_branches_that_pass_fewer_positions_do_not_decide(monkeypatch: pytest.Mo
     assert not found[0] & found[1] & found[2]
     task = lw.Task.path([(place.real, place.imag) for place in places])
     (defect,) = task.defects_of(mechanism, inputs, point="C")
-    assert (defect.kind, defect.between) == (lw.DefectKind.BRANCH, (2, 3))
+    assert (defect.kind, defect.between) == (lw.synthesis.DefectKind.BRANCH, (2, 3))
     # even if all of them end at positions that they may not pass
     ends = "linkwork.synthesis.defects.by_circuits._Search._end_at"
     monkeypatch.setattr(ends, lambda _, branch, k: "change point" if k == 1 else "")
     assert task.defects_of(mechanism, inputs, point="C") == (defect,)
     with monkeypatch.context() as patched:
-        changes = replace(defect, kind=lw.DefectKind.CIRCUIT)
+        changes = replace(defect, kind=lw.synthesis.DefectKind.CIRCUIT)
         patched.setattr(
             "linkwork.synthesis.defects.by_circuits._Search._change", lambda *_: changes
         )
@@ -248,7 +248,7 @@ def test_equal_inputs_of_different_places_need_different_configurations() -> Non
     near = (here[0] + 1e-9, here[1])
     assert lw.Task.path([here, near]).defects_of(bar, (60, 60), point="B") == ()
     (defect,) = lw.Task.path([here, there]).defects_of(bar, (60, 60), point="B")
-    assert defect.kind is lw.DefectKind.CIRCUIT
+    assert defect.kind is lw.synthesis.DefectKind.CIRCUIT
     told = "^positions 1 and 3 differ, but have one input and one nearest configuration: correct"
     far = (here[0] + 5.0, here[1])
     with pytest.raises(lw.InputError, match=told):

@@ -68,11 +68,11 @@ def test_one_slider_and_one_sliding_body_pass_four_poses() -> None:
     assert np.abs((arm * body.normal.conj()).real).max() < 1e-9
 
 
-def _misses(found: lw.Synthesis, poses: list[tuple[float, float, float]]) -> float:
+def _misses(found: lw.synthesis.Synthesis, poses: list[tuple[float, float, float]]) -> float:
     """The largest distance of delivered designs from poses."""
     worst = 0.0
     for design in found.delivered:
-        mechanism = lw.api.Mechanism(design.linkage)
+        mechanism = lw.Mechanism(design.linkage)
         start = None
         for value, (x, y, angle) in zip(design.inputs, poses, strict=True):
             position = mechanism.solve(at=value)
@@ -277,7 +277,7 @@ def test_tolerances_give_designs_within_them_and_more_than_five_poses() -> None:
     assert found.completeness is lw.Completeness.SAMPLED
     for design in found.delivered:
         assert 0.0 < design.error <= 0.5
-        mechanism = lw.api.Mechanism(design.linkage)
+        mechanism = lw.Mechanism(design.linkage)
         for value, wanted in zip(design.inputs, points, strict=True):
             x, y = mechanism.solve(at=value).points["P"]
             assert abs(x + 1j * y - wanted) <= design.error + 1e-6
@@ -298,7 +298,7 @@ def test_six_poses_are_missed_less_within_a_tolerance_of_their_angles() -> None:
         sound = [design for design in found.designs if not design.kinds]
         errors[swing] = min((d.error for d in sound), default=math.inf), len(sound)
         for design in sound[:8]:
-            mechanism = lw.api.Mechanism(design.linkage)
+            mechanism = lw.Mechanism(design.linkage)
             turns = []
             for value, (x, y, g) in zip(design.inputs, _SIX, strict=True):
                 at = mechanism.solve(at=value).points
@@ -329,7 +329,7 @@ def test_a_pivot_on_the_line_of_a_slider_is_one_point_of_its_file() -> None:
 def test_few_poses_are_met_within_their_tolerances(timed: bool) -> None:
     poses = [(0.0, 0.0, 0.0), (40.0, -40.0, 10.0), (100.0, -80.0, 25.0)]
 
-    def solved(reach: float, swing: float) -> lw.Synthesis:
+    def solved(reach: float, swing: float) -> lw.synthesis.Synthesis:
         positions = [
             {"point": [x, y], "angle": a, "tolerance": reach, "angle_tolerance": swing}
             | ({"input": 30.0 * k} if timed else {})
@@ -346,7 +346,7 @@ def test_few_poses_are_met_within_their_tolerances(timed: bool) -> None:
         assert not exact.delivered
     assert near.delivered
     for design in near.delivered[:8]:
-        motion = lw.api.Mechanism(design.linkage).sweep()
+        motion = lw.Mechanism(design.linkage).sweep()
         lead, path = next(iter(motion.inputs.values())), motion.trace("P")
         side = motion.trace("B") - motion.trace("A")
         rows = [int(np.abs(lead - at).argmin()) for at in design.inputs]

@@ -71,7 +71,7 @@ def test_designs_follow_the_differences_of_pairs(mechanism: str, count: int) -> 
         assert found.delivered
     output = "rocker" if mechanism == "four-bar" else "slide"
     for design in found.delivered:
-        bar = lw.api.Mechanism(design.linkage)
+        bar = lw.Mechanism(design.linkage)
         inputs = np.array(design.inputs)
         values = np.array([bar.solve(at=float(value))[output] for value in inputs])
         assert np.diff(inputs) == pytest.approx(np.diff(_PAIRS[:count], axis=0)[:, 0], abs=1e-9)
@@ -501,7 +501,7 @@ def test_a_formula_whose_ranges_begin_anywhere_is_met_at_five_points(mechanism: 
     assert (found.complex, found.real) == (3, 1)
     (design,) = found.delivered
     share = 0.5 - 0.5 * np.cos((2 * np.arange(1, 6) - 1) * np.pi / 10)
-    bar, output = lw.api.Mechanism(design.linkage), {"four-bar": "rocker", "slider-crank": "slide"}
+    bar, output = lw.Mechanism(design.linkage), {"four-bar": "rocker", "slider-crank": "slide"}
     positions = [bar.solve(at=float(a)) for a in design.inputs]
     values = np.array([position[output[mechanism]] for position in positions])
     assert [p["structural_error"] for p in positions] == pytest.approx([0.0] * 5, abs=1e-9)
@@ -529,7 +529,7 @@ def test_a_fit_whose_start_angles_were_found_has_its_structural_error(
     found = lw.Task.function("log10(x)", fit=fit, **spans).solve()
     assert found.delivered
     for design in found.delivered:
-        motion = lw.api.Mechanism(design.linkage).sweep(certify=False)
+        motion = lw.Mechanism(design.linkage).sweep(certify=False)
         assert np.abs(motion["structural_error"]).max() == pytest.approx(design.error, rel=2e-3)
         assert begin[0] - 1e-9 <= motion.inputs["crank"][0] <= begin[1] + 1e-9
 
@@ -584,7 +584,7 @@ def test_the_structural_error_holds_in_whatever_turn_angles_are_counted(
 ) -> None:
     task = {"x": (0, 1), "input": ends, "output": output, "mechanism": mechanism}
     found = lw.Task.function("x^2", fit="minimax", **task).solve()
-    motion = lw.api.Mechanism(found.delivered[0].linkage).sweep(certify=False)
+    motion = lw.Mechanism(found.delivered[0].linkage).sweep(certify=False)
     assert motion.inputs["crank"][[0, -1]] == pytest.approx(ends)
     error = np.abs(motion["structural_error"]).max()
     assert error == pytest.approx(found.delivered[0].error, rel=2e-3)
@@ -632,7 +632,7 @@ def test_the_file_of_a_design_is_driven_through_the_whole_range_of_its_function(
 ) -> None:
     task = lw.Task.function("x^2", **{"x": (0, 1), "mechanism": "four-bar", **given})
     design = task.solve().delivered[0]
-    inputs = lw.api.Mechanism(design.linkage).sweep().inputs["crank"]
+    inputs = lw.Mechanism(design.linkage).sweep().inputs["crank"]
     if ends is None:
         # the first of five precision points is 1.468 deg behind the begin
         turn = np.sign(given["input"])
@@ -667,7 +667,7 @@ def test_an_angle_of_the_formula_in_degrees_is_remarked_on() -> None:
 def test_a_range_that_passes_a_dead_point_does_not_touch_one_besides() -> None:
     points = [(250, 0), (520, 100), (600, 250), (350, 300)]
     found = lw.Task.path(points, wanted={"input": "turns fully"}).solve()
-    kind = lw.DefectKind.RANGE
+    kind = lw.synthesis.DefectKind.RANGE
     passing = [design for design in found.designs if kind in design.kinds]
     assert passing
     assert not any("touches a dead point" in d.message for e in passing for d in e.defects)

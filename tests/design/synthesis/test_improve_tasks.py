@@ -10,11 +10,11 @@ import numpy as np
 import pytest
 
 import linkwork as lw
-from linkwork.api.designs_folder import FolderOptions, write_designs
 from linkwork.core.foundation.errors import MechanismFileError
 from linkwork.core.mechanism.linkage import Linkage
 from linkwork.synthesis.commands import synthesis_lines
 from linkwork.synthesis.defects.verdicts import JudgedDesign
+from linkwork.synthesis.designs_folder import FolderOptions, write_designs
 from linkwork.synthesis.loops.candidates import Drive
 from linkwork.synthesis.solvers import improvement as improvement_synthesis
 from linkwork.synthesis.solvers.improved_mechanism import ImprovedMechanism
@@ -135,7 +135,7 @@ def test_a_wished_range_is_the_table_of_the_designs() -> None:
         wanted={"input": {"from": 20, "to": 140}},
     )
     design = task.solve().designs[0]
-    assert np.array(lw.api.Mechanism(design.linkage).sweep().inputs["crank"])[[0, -1]] == (
+    assert np.array(lw.Mechanism(design.linkage).sweep().inputs["crank"])[[0, -1]] == (
         pytest.approx([20.0, 140.0])
     )
 
@@ -151,7 +151,7 @@ def test_turning_fully_is_wished_of_mechanisms_of_all_kinds(
     goal = {"of": f"max({point}.x)", "least": -1e6}
     task = lw.Task.improve(mechanism, goals=[goal], starts=1, wanted={"input": "turns fully"})
     (design,) = task.solve().delivered
-    motion = lw.api.Mechanism(design.linkage).sweep(certify=False)
+    motion = lw.Mechanism(design.linkage).sweep(certify=False)
     lead = next(iter(motion.inputs.values()))
     assert len(motion) == rows
     assert abs(lead[-1] - lead[0]) == pytest.approx(360.0)
@@ -169,7 +169,7 @@ def test_ranges_of_several_inputs_have_as_many_rows_as_the_mechanism(tmp_path: P
     wanted = {"input": {"from": 0, "to": 90}}
     task = lw.Task.improve(tmp_path / "free.toml", goals=[goal], starts=1, wanted=wanted)
     (design,) = task.solve().delivered
-    motion = lw.api.Mechanism(design.linkage).sweep(certify=False)
+    motion = lw.Mechanism(design.linkage).sweep(certify=False)
     lead = next(iter(motion.inputs.values()))
     assert len(lead) == 361
     assert lead[[0, -1]] == pytest.approx([0.0, 90.0])
@@ -440,9 +440,9 @@ def test_a_broken_bound_of_a_goal_refuses_a_design(bound: dict[str, Any], told: 
         found = task.solve()
         assert not found.delivered
         (defect,) = found.designs[0].defects
-        assert defect.kind is lw.DefectKind.BOUND
+        assert defect.kind is lw.synthesis.DefectKind.BOUND
         assert re.fullmatch(told, defect.message)
-    design = lw.example("slider-crank").improve(goals, vary=["O2 A"], starts=2)[0]
+    design = lw.synthesis.improve(lw.example("slider-crank"), goals, vary=["O2 A"], starts=2)[0]
     assert not design.sound
     assert re.search(told, design.message)
 
@@ -453,7 +453,7 @@ def test_a_bound_that_binds_is_kept() -> None:
         lw.Task.improve("slider-crank", goals=goals, vary=["O2 A"], starts=2).solve().designs
     )
     assert design.defects == ()
-    stroke = lw.api.Mechanism(design.linkage).sweep().value("stroke(d)")
+    stroke = lw.Mechanism(design.linkage).sweep().value("stroke(d)")
     assert stroke == pytest.approx(60, abs=1e-4)
 
 

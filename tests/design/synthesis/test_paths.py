@@ -68,7 +68,7 @@ def test_a_delivered_design_passes_its_points_in_order() -> None:
     found = lw.Task.path(points, given={"fixed_pivots": [(0, 0), (100, 0)]}).solve()
     assert found.delivered
     design = next(d for d in found.delivered if abs(d.points["A"]) < 40.001)
-    mechanism = lw.api.Mechanism(design.linkage)
+    mechanism = lw.Mechanism(design.linkage)
     for value, point in zip(design.inputs, points, strict=True):
         place = mechanism.solve(at=value).points["P"]
         assert place == pytest.approx(point, abs=1e-6)
@@ -106,14 +106,14 @@ def test_given_lengths_hold_and_designs_with_them_are_proved(
     assert found.proved > 5
     assert found.completeness is grade
     assert found.delivered
-    proved = [d for d in found.designs if lw.DefectKind.NOT_PROVED not in d.kinds]
+    proved = [d for d in found.designs if lw.synthesis.DefectKind.NOT_PROVED not in d.kinds]
     assert len(proved) >= 0.95 * len(found.designs)
     for design in proved:
         for name, length in given["lengths"].items():
             assert _length(design, name) == pytest.approx(length, rel=1e-12)
         assert design.error == 0.0
         assert design.points["A0"] == 0j or design.points["B0"] == 0j
-    mechanism = lw.api.Mechanism(found.delivered[0].linkage)
+    mechanism = lw.Mechanism(found.delivered[0].linkage)
     for value, point in zip(found.delivered[0].inputs, _FOUR, strict=True):
         assert mechanism.solve(at=value).points["P"] == pytest.approx(point, abs=1e-6)
 
@@ -156,7 +156,7 @@ def test_designs_through_points_near_the_wanted_ones_pass_them_within_their_tole
     assert (errors > 0.1).any()
     assert "within the tolerances" in near.message
     design = max(near.delivered, key=lambda design: design.error)
-    mechanism = lw.api.Mechanism(design.linkage)
+    mechanism = lw.Mechanism(design.linkage)
     missed = [
         np.hypot(*(np.array(mechanism.solve(at=value).points["P"]) - point))
         for value, point in zip(design.inputs, _FOUR, strict=True)
@@ -179,7 +179,9 @@ def test_many_points_are_met_within_their_tolerance_or_refused() -> None:
     # the constraint holds one of them at its limit
     assert max(errors) == pytest.approx(0.9, rel=1e-4)
     assert max(errors) <= 0.9
-    refused = [design for design in bound.refused if design.kinds == (lw.DefectKind.TOLERANCE,)]
+    refused = [
+        design for design in bound.refused if design.kinds == (lw.synthesis.DefectKind.TOLERANCE,)
+    ]
     assert refused
     assert "tolerance 0.9 mm" in refused[0].defects[0].message
     assert bound.costliest == ("the tolerances", len(refused))

@@ -103,7 +103,7 @@ def test_a_range_may_end_where_a_table_does(start: float, stop: float, step: flo
     motion = mechanism.sweep()
     assert motion.value("dwell(s, 0.1)") == pytest.approx(180 - begin, abs=1e-8)
     assert motion.value("dwell_start(s, 0.1)") == pytest.approx(begin, abs=1e-8)
-    found = mechanism.sensitivity("dwell(s, 0.1)", by=["a"])
+    found = lw.design.sensitivity(mechanism, "dwell(s, 0.1)", by=["a"])
 
     def begins(a: complex) -> complex:
         s = 3.0 - a + 0.1

@@ -35,11 +35,11 @@ step = {step}
 BAR = {"O2 A": 40, "A B": 120, "O4 B": 80}
 
 
-def slider(step: float) -> lw.api.Mechanism:
+def slider(step: float) -> lw.Mechanism:
     return lw.loads(SLIDER.format(step=step))
 
 
-def bar(step: float, **further: object) -> lw.api.Mechanism:
+def bar(step: float, **further: object) -> lw.Mechanism:
     return lw.linkage(
         length="mm",
         points={"O2": (0, 0), "A": (35, 20), "B": (146, 66), "O4": (100, 0)},
@@ -59,7 +59,7 @@ def bar(step: float, **further: object) -> lw.api.Mechanism:
 def test_the_stroke_of_an_offset_slider_and_its_sensitivities_are_closed_forms(step: float) -> None:
     far, near = math.sqrt(193.0**2 - 52.0**2), math.sqrt(67.0**2 - 52.0**2)
     mechanism = slider(step)
-    found = mechanism.sensitivity("stroke(d)")
+    found = lw.design.sensitivity(mechanism, "stroke(d)")
     assert float(found.value) == pytest.approx(far - near, rel=1e-13)
     expected = {"a": 193.0 / far + 67.0 / near, "b": 193.0 / far - 67.0 / near,
                 "c": -52.0 / far + 52.0 / near}  # fmt: skip
@@ -84,7 +84,7 @@ def test_the_swing_of_a_rocker_and_its_sensitivities_are_those_of_its_dead_centr
     def swing(a: complex, b: complex, c: complex) -> complex:
         return math.degrees(1.0) * (angle(-1.0, a, b, c) - angle(1.0, a, b, c))
 
-    found = bar(step).sensitivity("stroke(rocker)")
+    found = lw.design.sensitivity(bar(step), "stroke(rocker)")
     assert float(found.value) == pytest.approx(swing(40, 120, 80).real, rel=1e-13)
     for k, name in enumerate(BAR):
         numbers: list[complex] = [40.0, 120.0, 80.0]
@@ -165,7 +165,9 @@ def test_a_pole_is_no_extreme() -> None:
 
 
 def test_a_goal_of_a_stroke_is_met_by_the_stroke_of_the_motion() -> None:
-    best = slider(3.0).improve({"of": "stroke(d)", "target": 150.0}, vary=["a"], starts=1)[0]
+    best = lw.synthesis.improve(
+        slider(3.0), {"of": "stroke(d)", "target": 150.0}, vary=["a"], starts=1
+    )[0]
     # polynomials through nine rows three degrees apart
     a = best.numbers["a"]
     stroke = math.sqrt((130.0 + a) ** 2 - 52.0**2) - math.sqrt((130.0 - a) ** 2 - 52.0**2)
@@ -216,7 +218,7 @@ step = {step}
 """
 
 
-def cam(rise: float, step: float, start: float = 0.0) -> lw.api.Mechanism:
+def cam(rise: float, step: float, start: float = 0.0) -> lw.Mechanism:
     rest = 259.0 - 2.0 * rise
     return lw.loads(CAM.format(rise=rise, rest=rest, step=step, start=start, stop=start + 360.0))
 
@@ -233,7 +235,7 @@ def test_extremes_are_found_where_the_quantity_is_zero_in_all_rows(step: float) 
         [2.0, 1.0], rel=1e-12
     )
     # six equal extremes have no derivative
-    assert math.isnan(mechanism.sensitivity("max(w)")["c"])
+    assert math.isnan(lw.design.sensitivity(mechanism, "max(w)")["c"])
 
 
 @pytest.mark.parametrize(("rise", "step"), [(8.0, 20.0), (8.0, 30.0), (1.5, 30.0), (1.5, 5.0)])

@@ -9,7 +9,7 @@ from typing import Any
 import pytest
 
 import linkwork as lw
-from linkwork.api import example_text
+from linkwork import example_text
 from linkwork.app.live.browser_desk import BrowserDesk
 from linkwork.core.textfile.link import fragment_of
 from linkwork.synthesis.solvers.solving import solve_task

@@ -11,9 +11,10 @@ from typing import Any
 import pytest
 
 import linkwork as lw
-from linkwork.app.live.mechanism_file import MechanismFile, blank_sheet, new_file
+from linkwork.app.live.mechanism_file import MechanismFile, new_file
 from linkwork.app.live.server import LiveServer
 from linkwork.app.live.workbench import Workbench
+from linkwork.core.textfile.reader import blank_sheet
 from tests.viewer.accessibility import assert_accessible
 from tests.viewer.conftest import browser as browser  # the fixture, for this folder too
 from tests.viewer.live.conftest import FOUR_BAR

@@ -11,9 +11,10 @@ from typing import Any
 import pytest
 
 import linkwork as lw
-from linkwork.app.live.mechanism_file import MechanismFile, blank_sheet
+from linkwork.app.live.mechanism_file import MechanismFile
 from linkwork.app.live.server import LiveServer
 from linkwork.app.live.workbench import Workbench
+from linkwork.core.textfile.reader import blank_sheet
 from tests.viewer.live.rest import at_rest
 
 Place = tuple[float, float]

@@ -10,10 +10,11 @@ import pytest
 import linkwork as lw
 from linkwork.app.live import events as tell, requests as ask
 from linkwork.app.live.file_state import FileState
-from linkwork.app.live.mechanism_file import MechanismFile, blank_sheet
+from linkwork.app.live.mechanism_file import MechanismFile
 from linkwork.app.live.palette import PALETTE
 from linkwork.app.live.workbench import Workbench
 from linkwork.core.mechanism.part.index import PARTS
+from linkwork.core.textfile.reader import blank_sheet
 
 Place = tuple[float, float]
 

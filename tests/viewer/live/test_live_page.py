@@ -11,6 +11,7 @@ from typing import Any
 import pytest
 
 import linkwork as lw
+from linkwork.circuits.failure.remedies import nearest_assembly
 from linkwork.core.mechanism.linkage import Linkage
 from linkwork.core.textfile.link import text_of_link
 from tests.described import described_as
@@ -120,7 +121,7 @@ def test_what_cannot_close_is_shown_with_its_gap(open_live: Open, served: Served
     page = open_live()
     type_number(page, "O2 O4", 300)
     page.locator(".lw-gaps .lw-gap").first.wait_for()
-    gap = lw.loads(served.workbench.text).nearest_assembly().gap
+    gap = nearest_assembly(lw.loads(served.workbench.text).model).gap
     said = page.locator(".lw-open").text_content()
     assert f"a gap of {gap:.2f}" in said, said
     page.get_by_role("button", name="Undo").click()

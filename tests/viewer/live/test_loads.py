@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 
 import linkwork as lw
-from linkwork.api import example_text
+from linkwork import example_text
 from linkwork.app.live import events as tell, requests as ask
 from linkwork.app.live.file_state import FileState
 from linkwork.app.live.mechanism_file import MechanismFile

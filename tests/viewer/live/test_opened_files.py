@@ -10,13 +10,12 @@ from typing import Any
 import pytest
 
 import linkwork as lw
-from linkwork.api import example_text
+from linkwork import example_text
 from linkwork.app.live import events as tell, requests as ask
 from linkwork.app.live.bench import Bench
-from linkwork.app.live.mechanism_file import new_file
+from linkwork.app.live.mechanism_file import new_file, task_template
 from linkwork.app.live.messages import MessageError, decoded
 from linkwork.app.live.server import LiveServer
-from linkwork.app.task.templates import task_template
 from linkwork.synthesis.solvers.solving import solve_task
 from tests.exchange.samples import GEOGEBRA, MJCF, PMKS_LINES, PYSLVS, URDF, dxf_text, packed
 
@@ -46,7 +45,7 @@ def file(name: str, content: str | bytes, *, discard: bool = False) -> ask.OpenF
 @pytest.mark.parametrize(
     ("name", "content"),
     [
-        ("bar.json", lw.example("hoeken").exported("pylinkage").text),
+        ("bar.json", lw.readers.exported(lw.example("hoeken"), "pylinkage").text),
         ("pmks.txt", PMKS_LINES),
         ("bar.pyslvs", PYSLVS),
         ("bar.ggb", packed(GEOGEBRA)),
@@ -62,7 +61,7 @@ def test_a_file_of_another_program_opens_as_a_mechanism_with_what_it_lacks(
     assert isinstance(opened, tell.FileOpened)
     path = Path(name)
     path.write_bytes(content if isinstance(content, bytes) else content.encode())
-    found = lw.imported(path)
+    found = lw.readers.imported(path)
     assert opened.carried == found.carried
     assert opened.left_out == tuple(map(str, found.left_out))
     assert sheet.current.name == f"{path.stem}.toml"

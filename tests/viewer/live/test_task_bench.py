@@ -15,7 +15,7 @@ from linkwork.app.live import events as tell, requests as ask, task_requests as 
 from linkwork.app.live.answers import GivenUpError, Hurry
 from linkwork.app.live.bench import Bench
 from linkwork.app.live.file_state import FileState
-from linkwork.app.live.mechanism_file import MechanismFile, new_file
+from linkwork.app.live.mechanism_file import MechanismFile, new_file, task_template
 from linkwork.app.live.opened_file import NoSign
 from linkwork.app.live.session import Desk
 from linkwork.app.live.task_events import (
@@ -30,7 +30,6 @@ from linkwork.app.live.workbench import Workbench
 from linkwork.app.task import designs
 from linkwork.app.task.bench import TaskBench
 from linkwork.app.task.cycle import SolveTask
-from linkwork.app.task.templates import task_template, template_names, template_text
 from linkwork.core.foundation.errors import InputError
 from linkwork.core.results.listing.motion_listing import rounded_down
 from linkwork.synthesis.loops.candidates import GUIDED
@@ -38,6 +37,7 @@ from linkwork.synthesis.six_bars import watt as watt_six_bars
 from linkwork.synthesis.solvers.result import Synthesis
 from linkwork.synthesis.solvers.solving import solve_task
 from linkwork.synthesis.tasks.task import MECHANISMS, Task
+from linkwork.synthesis.tasks.templates import template_names, template_text
 from tests.design.six_bars.six_bars import ARMS, chebyshev, member_of
 
 

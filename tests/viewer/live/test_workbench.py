@@ -14,12 +14,13 @@ import pytest
 import linkwork as lw
 from linkwork.app.live import events as tell, requests as ask
 from linkwork.app.live.file_state import ChangeableNumber, FileState
-from linkwork.app.live.mechanism_file import MechanismFile, blank_sheet
+from linkwork.app.live.mechanism_file import MechanismFile
 from linkwork.app.live.whole_edits import Mirror
 from linkwork.app.live.workbench import Workbench
 from linkwork.app.pages.offline_page import embed_snippet, qr_svg
 from linkwork.core.mechanism.linkage import Linkage
 from linkwork.core.textfile.link import fragment_of
+from linkwork.core.textfile.reader import blank_sheet
 from tests.described import described_as
 from tests.thinned import thinned
 from tests.viewer.live.conftest import FOUR_BAR

@@ -20,7 +20,7 @@ from typing import Any, ClassVar
 import pytest
 
 import linkwork as lw
-from linkwork.api import example_text
+from linkwork import example_text
 from linkwork.app.live.browser_desk import BrowserDesk
 from linkwork.app.web.web_app import pyodide_files, web_folder
 from linkwork.synthesis.solvers.solving import solve_task

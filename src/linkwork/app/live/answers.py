@@ -30,10 +30,12 @@ from linkwork.app.live.result_events import (
     newton_shown,
     position_found,
 )
-from linkwork.app.live.solvable import Solvable
 from linkwork.app.live.subject import Subject
 from linkwork.app.pages.offline_page import embed_snippet, qr_svg
+from linkwork.circuits.failure.remedies import nearest_assembly
+from linkwork.core.api.mechanism import Mechanism
 from linkwork.core.foundation.errors import InputError
+from linkwork.core.motion.iterating import guessed_points, pulled_guess
 from linkwork.core.numerics.newton import NewtonOptions
 from linkwork.core.results.motion import Motion
 from linkwork.core.results.quantities.definition import Group
@@ -196,7 +198,7 @@ _MOST_ITERATIONS = 200
 
 
 @singledispatch
-def answered(query: Query, mechanism: Solvable) -> list[Event]:
+def answered(query: Query, mechanism: Mechanism) -> list[Event]:
     """The answer to a question.
 
     Raises
@@ -208,7 +210,7 @@ def answered(query: Query, mechanism: Solvable) -> list[Event]:
 
 
 @answered.register
-def _QUERIES_(query: SolveAt, mechanism: Solvable) -> list[Event]:
+def _QUERIES_(query: SolveAt, mechanism: Mechanism) -> list[Event]:
     at = query.at or None
     position = mechanism.solve(at, configuration=query.configuration)
     events: list[Event] = [position_found(position)]
@@ -220,12 +222,12 @@ def _QUERIES_(query: SolveAt, mechanism: Solvable) -> list[Event]:
 
 
 @answered.register
-def _(query: ListConfigurations, mechanism: Solvable) -> list[Event]:
+def _(query: ListConfigurations, mechanism: Mechanism) -> list[Event]:
     return [configurations_found(mechanism.configurations(query.at or None))]
 
 
 @answered.register
-def _(query: NewtonSteps, mechanism: Solvable) -> list[Event]:
+def _(query: NewtonSteps, mechanism: Mechanism) -> list[Event]:
     if not 1 <= query.max_steps <= _MOST_ITERATIONS:
         raise InputError(f"max_steps must be from 1 to {_MOST_ITERATIONS}")
     options = NewtonOptions(max_steps=query.max_steps)
@@ -233,17 +235,17 @@ def _(query: NewtonSteps, mechanism: Solvable) -> list[Event]:
         options = replace(options, largest_turn=math.inf)
     guess, at = query.guess, query.at or None
     if query.pull:
-        guess = mechanism.pulled_guess(query.pull, (query.x, query.y), guess, at)
+        guess = pulled_guess(mechanism.model, query.pull, (query.x, query.y), guess, at)
     shown = mechanism.iterates(guess, at, options=options)
-    return [newton_shown(shown, guess, mechanism.guessed_points())]
+    return [newton_shown(shown, guess, guessed_points(mechanism.model))]
 
 
 def nearest_closure(
-    mechanism: Solvable,
+    mechanism: Mechanism,
     at: Mapping[str, float] | None,
     message: str,
     remedies: Mapping[str, float],
     elsewhere: Mapping[str, float] = MappingProxyType({}),
 ) -> CannotClose:
     """The position nearest to closure, with lengths and inputs that would close the loops."""
-    return cannot_close(mechanism.nearest_assembly(at), message, remedies, elsewhere)
+    return cannot_close(nearest_assembly(mechanism.model, at), message, remedies, elsewhere)

@@ -10,14 +10,13 @@ from typing import TYPE_CHECKING
 from linkwork.app.live import task_requests as do
 from linkwork.app.live.answers import Hurry
 from linkwork.app.live.events import Refused
-from linkwork.app.live.mechanism_file import MechanismFile, new_file
+from linkwork.app.live.mechanism_file import MechanismFile, new_file, task_template
 from linkwork.app.live.opened_file import Events, NoSign, WorkSign
 from linkwork.app.live.requests import OpenExample, OpenFile, Request
 from linkwork.app.live.result_events import problems_found
-from linkwork.app.live.solvable import Read
+from linkwork.app.live.subject import Read
 from linkwork.app.live.task_events import DesignOpened
 from linkwork.app.live.workbench import Workbench
-from linkwork.app.task.templates import task_template
 from linkwork.core.foundation.errors import InputError, MechanismError
 
 if TYPE_CHECKING:

@@ -12,14 +12,14 @@ from urllib.parse import unquote
 from linkwork.app.live.answers import Hurry
 from linkwork.app.live.bench import Bench
 from linkwork.app.live.events import Event, Refused
-from linkwork.app.live.mechanism_file import MechanismFile, blank_sheet
+from linkwork.app.live.mechanism_file import MechanismFile, task_template
 from linkwork.app.live.messages import MessageError, decoded, encoded
 from linkwork.app.live.requests import SetText
 from linkwork.app.live.session import Waiting, WorkSigns, answer, answers_of
-from linkwork.app.live.solvable import Read
-from linkwork.app.task.templates import task_template
+from linkwork.app.live.subject import Read
 from linkwork.core.foundation.errors import InputError
 from linkwork.core.textfile.link import text_of_link
+from linkwork.core.textfile.reader import blank_sheet
 
 if TYPE_CHECKING:
     from linkwork.app.task.cycle import SolveTask

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import replace
+from functools import partial
 
 import numpy as np
 
@@ -12,20 +13,22 @@ from linkwork.app.live.events import Event, MotionFound, SimulationFound, Sketch
 from linkwork.app.live.requests import SetSheet, Simulate, SolveAt
 from linkwork.app.live.result_events import motion_found
 from linkwork.app.live.simulated import not_simulated, simulate, simulation_found
-from linkwork.app.live.solvable import Solvable
 from linkwork.app.live.subject import Subject, closing_input
+from linkwork.app.pages.moving_scene import MovingScene, moving_scene
 from linkwork.app.pages.packing import shortened, still_shape, unpressed
 from linkwork.app.pages.page_building import Loops, drawn_page
 from linkwork.app.pages.page_data import PageData
+from linkwork.core.api.mechanism import Mechanism
 from linkwork.core.drawing.labels import Kept
 from linkwork.core.drawing.mechanism_scene import traced
-from linkwork.core.drawing.moving_scene import MovingScene, moving_scene
 from linkwork.core.drawing.paths import trace_symbols
 from linkwork.core.drawing.pose import Pose
 from linkwork.core.drawing.scene import Box, Measures
 from linkwork.core.foundation.errors import InputError
 from linkwork.core.foundation.statuses import Status
 from linkwork.core.mechanism.dimensions import LARGEST
+from linkwork.core.motion.iterating import moving_loops
+from linkwork.core.motion.sweeping import approximate_sweep
 from linkwork.core.results.motion import Motion
 
 
@@ -267,16 +270,16 @@ class Cycle:
         page = self._picture.page(
             motion,
             equations,
-            mechanism.moving_loops,
+            partial(moving_loops, mechanism.model),
             asked=shown,
             brief=event.live,
             rates=self.rates or not event.live,
         )
         return replace(event, page=page)
 
-    def _swept(self, mechanism: Solvable, live: bool) -> tuple[Motion, str]:
+    def _swept(self, mechanism: Mechanism, live: bool) -> tuple[Motion, str]:
         if live:
-            return mechanism.approximate_sweep(self.motion), ""
+            return approximate_sweep(mechanism.model, self.motion), ""
         description = mechanism.description
         rows = [description.rows(which) for which in description.inputs]
         count = max(map(len, rows))

@@ -6,8 +6,6 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from functools import singledispatch
 
-from linkwork.app.edits.entries import copy_selection, mirror_numbers, names_in_file, rename
-from linkwork.app.edits.unit_change import change_units
 from linkwork.app.live.drawn_parts import edits_of_drawing
 from linkwork.app.live.force_entries import drop_lost_loads, entry_title, put_force_entry, put_mass
 from linkwork.app.live.messages import kind_of
@@ -55,6 +53,8 @@ from linkwork.core.foundation.names import GROUND, canonical, find_spelling
 from linkwork.core.mechanism.linkage import Draft
 from linkwork.core.mechanism.part.index import PARTS
 from linkwork.core.textfile.text_edits import TextEdits
+from linkwork.design.edits.entries import copy_selection, mirror_numbers, names_in_file, rename
+from linkwork.design.edits.unit_change import change_units
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -5,7 +5,6 @@ from __future__ import annotations
 import base64
 import binascii
 import hashlib
-import json
 import re
 from dataclasses import dataclass
 from enum import Enum
@@ -15,17 +14,13 @@ from linkwork.app.live.events import FileOpened
 from linkwork.app.live.requests import OpenFile
 from linkwork.core.foundation.errors import InputError, MechanismFileError, Problem
 from linkwork.core.foundation.files import save_text, unwritten
-from linkwork.core.textfile.reader import example_text
+from linkwork.core.textfile.reader import blank_sheet, example_text
 from linkwork.core.textfile.toml_text import bytes_of, data_of, text_of
 from linkwork.core.textfile.writer import write_text
 from linkwork.readers.formats import FORMATS, read_foreign
+from linkwork.synthesis.tasks.templates import template_text
 
 _MOST_COPIES = 100  # names tried for a copy next to the file
-
-
-def blank_sheet(name: str) -> str:
-    """The text of a mechanism without points."""
-    return f'format = 1\nname = {json.dumps(name, ensure_ascii=False)}\nlength = "mm"\n'
 
 
 def new_file(example: str = "", text: str | None = None) -> MechanismFile:
@@ -234,3 +229,8 @@ def read_visitor_file(request: OpenFile) -> VisitorFile:
             left_out=tuple(map(str, reading.left_out)),
         )
     return VisitorFile(file=new_file(stem or "opened", text), opened=opened)
+
+
+def task_template(name: str) -> MechanismFile:
+    """A task to begin with, under a name that no file has; raises like `template_text`."""
+    return new_file(name, template_text(name))

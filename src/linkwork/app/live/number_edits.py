@@ -6,8 +6,6 @@ import re
 from dataclasses import dataclass
 from fractions import Fraction
 
-from linkwork.app.edits.entries import measured_by
-from linkwork.app.edits.unit_change import FileDegrees
 from linkwork.app.live.moving_points import Before, put_place
 from linkwork.app.live.requests import SetInput, SetNumber
 from linkwork.core.expression.grammar import parse
@@ -28,6 +26,8 @@ from linkwork.core.mechanism.linkage import Draft
 from linkwork.core.mechanism.varied_numbers import VariedNumber, number_named
 from linkwork.core.textfile.text_edits import TextEdits
 from linkwork.core.textfile.toml_text import data_of
+from linkwork.design.edits.entries import measured_by
+from linkwork.design.edits.unit_change import FileDegrees
 
 
 @dataclass(frozen=True)

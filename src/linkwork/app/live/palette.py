@@ -11,7 +11,6 @@ from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import NoReturn
 
-from linkwork.app.edits.entries import measured_by
 from linkwork.app.live.drawn_parts import picks_of
 from linkwork.app.live.file_state import PaletteField, PalettePart
 from linkwork.app.live.number_edits import TypedUnits
@@ -31,6 +30,7 @@ from linkwork.core.foundation.values import (
     Text,
 )
 from linkwork.core.mechanism.part.index import PARTS
+from linkwork.design.edits.entries import measured_by
 
 __all__ = ["PALETTE", "Typed", "field_of", "part_name", "part_of", "shown_entry", "typed_entries"]
 

@@ -6,6 +6,7 @@ import base64
 import math
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import dataclass
+from functools import partial
 from pathlib import Path, PurePath
 from tempfile import TemporaryDirectory
 
@@ -40,14 +41,14 @@ from linkwork.app.live.file_state import (
 from linkwork.app.live.force_entries import entries_shown, masses_shown
 from linkwork.app.live.history import History
 from linkwork.app.live.part_entries import parts_shown
-from linkwork.app.live.solvable import Solvable
 from linkwork.app.live.subject import Subject, lacks_of
+from linkwork.app.pages.moving_scene import moving_scene
 from linkwork.app.pages.page_building import motion_page
 from linkwork.app.pages.page_data import PageData
 from linkwork.app.pages.still_page import still_page
 from linkwork.circuits.results import Branch, Circuit, Circuits, Configurations
+from linkwork.core.api.mechanism import Mechanism
 from linkwork.core.drawing.mechanism_scene import scene_of
-from linkwork.core.drawing.moving_scene import moving_scene
 from linkwork.core.drawing.scene import Scene
 from linkwork.core.drawing.svg import FixedInks, inline_svg
 from linkwork.core.equations.notation import PlainText
@@ -65,6 +66,7 @@ from linkwork.core.mechanism.description import Description
 from linkwork.core.mechanism.linkage import Draft
 from linkwork.core.mechanism.loops import Loops
 from linkwork.core.mechanism.varied_numbers import varied_numbers
+from linkwork.core.motion.iterating import moving_loops
 from linkwork.core.results.limit import Limit
 from linkwork.core.results.motion import Motion
 from linkwork.core.results.nearest_assembly import LinkEnd, NearestAssembly
@@ -147,7 +149,7 @@ def exported_file(
             content = csv_text(motion.table()).encode()
         elif suffix == "html":
             equations = mechanism.equations().mathml()
-            loops = mechanism.moving_loops
+            loops = partial(moving_loops, mechanism.model)
             page = viewer.motion_page({"motion": motion}, equations=equations, loops=loops)
             content = viewer.offline_page(page).encode()
         elif suffix == "xlsx":
@@ -161,7 +163,7 @@ def exported_file(
     )
 
 
-def _scene(mechanism: Solvable, motion: Motion | None, row: int | None) -> Scene:
+def _scene(mechanism: Mechanism, motion: Motion | None, row: int | None) -> Scene:
     """The picture of a row, or without a motion of the only position."""
     if motion is None:
         position = mechanism.solve()
@@ -176,10 +178,10 @@ def _scene(mechanism: Solvable, motion: Motion | None, row: int | None) -> Scene
     return moving_scene(motion).at(shown)
 
 
-def _workbook(mechanism: Solvable, motion: Motion) -> tuple[bytes, tuple[str, ...]]:
+def _workbook(mechanism: Mechanism, motion: Motion) -> tuple[bytes, tuple[str, ...]]:
     with TemporaryDirectory() as folder:
         path = Path(folder) / "motion.xlsx"
-        notices = mechanism.to_excel(path, motion)
+        notices = mechanism.write(path, motion=motion)
         return path.read_bytes(), notices
 
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
 
 from linkwork.app.live.file_state import Lack, Remedy
@@ -16,9 +16,10 @@ from linkwork.app.live.requests import (
     SetGround,
     SetInput,
 )
-from linkwork.app.live.solvable import Read, Solvable
 from linkwork.app.pages.page_data import PageData
 from linkwork.app.pages.still_page import still_page
+from linkwork.circuits.failure.remedies import nearest_assembly
+from linkwork.core.api.mechanism import Mechanism
 from linkwork.core.drawing.labels import Kept
 from linkwork.core.foundation.errors import InputError, MechanismError, Problem, key_text
 from linkwork.core.foundation.names import GROUND
@@ -30,6 +31,9 @@ from linkwork.core.mechanism.skeleton import Skeleton
 from linkwork.core.results.quantity import Units
 from linkwork.core.textfile.reader import read_draft
 
+#: Builds a mechanism from a text and its name for messages; raises ``MechanismFileError``.
+Read = Callable[[str, str], Mechanism]
+
 
 @dataclass(frozen=True, kw_only=True)
 class Subject:
@@ -39,13 +43,13 @@ class Subject:
     """
 
     text: str
-    solvable: Solvable | None = None
+    solvable: Mechanism | None = None
     draft: Draft | None = None
     problems: tuple[Problem, ...] = ()
     readable: bool = True
 
     @property
-    def mechanism(self) -> Solvable:
+    def mechanism(self) -> Mechanism:
         """The mechanism.
 
         Raises
@@ -305,7 +309,7 @@ _LOOKED_AT = 24  # rows at which closure is tried
 _CLOSED = 1e-9  # relative to the gap at the start: closed
 
 
-def closing_input(mechanism: Solvable) -> Mapping[str, float]:
+def closing_input(mechanism: Mechanism) -> Mapping[str, float]:
     """The value of a single input at which a mechanism closes that is open at its start.
 
     Some rows of the table are tried, those next to the start first. Empty if none of them closes,
@@ -314,17 +318,17 @@ def closing_input(mechanism: Solvable) -> Mapping[str, float]:
     description = mechanism.description
     if not isinstance(description, Linkage) or len(description.inputs) != 1:
         return {}
-    start = mechanism.nearest_assembly()
+    start = nearest_assembly(mechanism.model)
     ((name, here),) = start.input.items()
     rows = description.rows(description.inputs[0])
     some = rows[:: max(1, len(rows) // _LOOKED_AT)].tolist()
     for value in sorted(some, key=lambda value: abs(value - here)):
-        if mechanism.nearest_assembly({name: value}).gap <= _CLOSED * start.gap:
+        if nearest_assembly(mechanism.model, {name: value}).gap <= _CLOSED * start.gap:
             return {name: value}
     return {}
 
 
-def sketch_at(mechanism: Solvable, at: Mapping[str, float]) -> tuple[MovePoint, ...]:
+def sketch_at(mechanism: Mechanism, at: Mapping[str, float]) -> tuple[MovePoint, ...]:
     """Edits that move the points of a sketch to their assembled positions at given input values.
 
     Raises
@@ -338,6 +342,6 @@ def sketch_at(mechanism: Solvable, at: Mapping[str, float]) -> tuple[MovePoint, 
     fixed = description.links[GROUND]
     return tuple(
         MovePoint(point=name, x=x, y=y)
-        for name, (x, y) in mechanism.nearest_assembly(at).points.items()
+        for name, (x, y) in nearest_assembly(mechanism.model, at).points.items()
         if name in description.points and name not in fixed
     )

@@ -47,8 +47,7 @@ from linkwork.app.live.requests import (
     Together,
 )
 from linkwork.app.live.result_events import file_state, problems_found
-from linkwork.app.live.solvable import Read
-from linkwork.app.live.subject import Subject, read_subject, sketch_at
+from linkwork.app.live.subject import Read, Subject, read_subject, sketch_at
 from linkwork.core.foundation.errors import InputError, MechanismError
 from linkwork.core.textfile.text_edits import TextEdits
 from linkwork.core.textfile.toml_text import data_of

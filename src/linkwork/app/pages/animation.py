@@ -8,27 +8,33 @@ import subprocess
 import tempfile
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
+from functools import partial
 from pathlib import Path
 from types import ModuleType
 from typing import TYPE_CHECKING
 
 import numpy as np
 
+from linkwork.app.pages.film import film
+from linkwork.app.pages.moving_scene import moving_scene
 from linkwork.app.pages.offline_page import offline_page
 from linkwork.app.pages.packing import falling, in_time, play_order
 from linkwork.app.pages.page_building import Loops, motion_page
 from linkwork.app.pages.page_data import PageData, SolvingPage
-from linkwork.core.drawing.moving_scene import moving_scene
+from linkwork.app.pages.solver_page import page_solver
+from linkwork.core.api.mechanism import Mechanism
+from linkwork.core.drawing.annotations import Force
 from linkwork.core.drawing.pose import inputs_caption
 from linkwork.core.drawing.scene import THEMES, theme_named
 from linkwork.core.foundation.arrays import AnyArray
 from linkwork.core.foundation.errors import InputError, MissingPackageError
 from linkwork.core.foundation.files import as_path, save_bytes, suffix_of
 from linkwork.core.foundation.loading import installed_with
+from linkwork.core.foundation.names import as_names
 from linkwork.core.foundation.values import given_or
+from linkwork.core.motion.iterating import moving_loops
 from linkwork.core.results.motion import Motion
-from linkwork.forces.results import Force
-from linkwork.writers.film import film
+from linkwork.families import record_design
 
 if TYPE_CHECKING:
     from PIL.Image import Image
@@ -187,7 +193,7 @@ class FilmOptions:
     Examples
     --------
     >>> import linkwork as lw
-    >>> lw.FilmOptions(fps=25, rows=100).rows
+    >>> lw.app.FilmOptions(fps=25, rows=100).rows
     100
     """
 
@@ -333,3 +339,97 @@ def _film_rows(motion: Motion, options: FilmOptions) -> list[int]:
     count = min(wanted if options.rows else wanted // 2 + 1, len(order))
     there = [int(order[k]) for k in np.linspace(0, len(order) - 1, count).round().astype(int)]
     return there + there[-2:0:-1]
+
+
+def animate(
+    mechanism: Mechanism,
+    path: str | Path,
+    motion: Motion | None = None,
+    *,
+    all_circuits: bool = False,
+    forces: Sequence[Force] = (),
+    sliders: Sequence[str] = (),
+    options: FilmOptions | None = None,
+    progress: Callable[[float], None] | None = None,
+) -> None:
+    """Write the motion as an animated page or a film.
+
+    A page (.html) works offline in any browser, without Linkwork: it plays the motion, follows
+    the dragged crank, and shows plots and certified numbers. Films are .gif, .apng, .webp (with
+    Pillow) and .mp4 (with ffmpeg).
+
+    Parameters
+    ----------
+    path : str or Path
+        The file; its suffix selects the format.
+    motion : Motion, optional
+        A sweep of this mechanism; by default :meth:`cycle`.
+    all_circuits : bool
+        Whether a page contains all circuits.
+    forces : sequence of Force
+        Forces that a page draws as arrows at their points.
+    sliders : sequence of str
+        Numbers of the mechanism, by the names that :meth:`Mechanism.family` takes, that can be
+        changed in a page: it contains the solver of this mechanism, and proves every position that
+        it draws. It shows :meth:`Mechanism.sweep`.
+    options : FilmOptions, optional
+        Frames per second, number of positions and size of a film.
+    progress : callable, optional
+        Called with the finished fraction, 0 to 1.
+
+    Raises
+    ------
+    InputError
+        If the suffix is unknown, there is nothing to draw, an option does not fit the
+        format, or a page cannot solve the mechanism with these sliders.
+    UnknownNameError
+        If a force is at a point that does not exist, or a slider's number does not exist.
+    MissingPackageError
+        If the package that writes the format is not installed.
+    """
+    kind = check_animation(path, options)
+    if all_circuits and (motion is not None or kind != "html"):
+        raise InputError("all circuits need the page of a mechanism: use the suffix .html")
+    if forces and kind != "html":
+        raise InputError("only a page shows forces: use the suffix .html")
+    solver = None
+    if sliders:
+        if kind != "html" or all_circuits or motion is not None:
+            raise InputError(
+                "sliders are for a page of one sweep: use the suffix .html, and leave out "
+                "motion and all_circuits"
+            )
+        motion = mechanism.sweep(progress=progress)
+        solver = solving_page(mechanism, sliders, motion)
+    motions = shown_motions(mechanism, motion, all_circuits, progress)
+    content = animation(
+        motions,
+        kind,
+        options=options,
+        equations=mechanism.equations().mathml(),
+        loops=partial(moving_loops, mechanism.model),
+        forces=forces,
+        solver=solver,
+        progress=progress,
+    )
+    save_bytes(content, path)
+
+
+def solving_page(mechanism: Mechanism, sliders: Sequence[str], motion: Motion) -> SolvingPage:
+    """The solver for a page that shows a sweep with sliders; see :meth:`animate`."""
+    if not motion.found.any():
+        raise InputError("there is no motion to change with sliders: no position was found")
+    design = record_design(mechanism.model, as_names("sliders", sliders))
+    return page_solver(design, motion, design.changed())
+
+
+def shown_motions(
+    mechanism: Mechanism,
+    motion: Motion | None,
+    all_circuits: bool,
+    progress: Callable[[float], None] | None = None,
+) -> dict[str, Motion]:
+    """The displayed motions, by name."""
+    if all_circuits:
+        return mechanism.cycles(progress=progress)
+    return {"motion": mechanism.cycle() if motion is None else motion}

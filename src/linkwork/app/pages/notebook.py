@@ -10,12 +10,14 @@ import html
 import json
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import replace
-from functools import lru_cache
+from functools import lru_cache, partial
 from importlib import resources
 from typing import Any
 
 import numpy as np
 
+from linkwork.app.pages.animation import shown_motions
+from linkwork.app.pages.moving_scene import moving_scene
 from linkwork.app.pages.offline_page import page_json
 from linkwork.app.pages.page_building import Loops, motion_page
 from linkwork.circuits.results import (
@@ -24,17 +26,17 @@ from linkwork.circuits.results import (
     circuits_summary,
     configurations_summary,
 )
-from linkwork.core.drawing.annotations import SceneOptions
+from linkwork.core.api.mechanism import Mechanism
+from linkwork.core.drawing.annotations import Force, SceneOptions
 from linkwork.core.drawing.mechanism_scene import configuration_sheet, reach_of, scene_of
-from linkwork.core.drawing.moving_scene import moving_scene
 from linkwork.core.drawing.paths import faint_symbols, further_positions
 from linkwork.core.drawing.pose import Pose, reached_caption
 from linkwork.core.drawing.scene import DARK, LIGHT, Box, Scene
 from linkwork.core.drawing.svg import Inks, inline_svg
-from linkwork.core.foundation.errors import choices
+from linkwork.core.foundation.errors import InputError, choices
 from linkwork.core.foundation.loading import installed_with
-from linkwork.core.results.motion import Motion
-from linkwork.core.results.motion_table import motion_summary
+from linkwork.core.motion.iterating import moving_loops
+from linkwork.core.results.motion import Motion, motion_summary
 from linkwork.core.results.position import Position, position_summary
 from linkwork.core.results.tables import Summary
 from linkwork.design.tolerance_results import (
@@ -43,7 +45,6 @@ from linkwork.design.tolerance_results import (
     sensitivity_summary,
     tolerance_summary,
 )
-from linkwork.forces.results import Force
 
 _CLASS = "linkwork-shown"
 _LONGEST, _IN_ROW, _OF_CIRCUIT = 380.0, 230.0, 310.0  # longer sides of pictures [CSS px]
@@ -311,3 +312,43 @@ def _widget_class() -> Any:
                 self.row = min(there, key=lambda row: (abs(row - self.row), row))
 
     return MotionWidget
+
+
+def widget(
+    mechanism: Mechanism,
+    motion: Motion | None = None,
+    *,
+    all_circuits: bool = False,
+    forces: Sequence[Force] = (),
+) -> Any:
+    """The motion as a notebook widget; needs the extra ``notebook``.
+
+    Parameters
+    ----------
+    motion : Motion, optional
+        A sweep of this mechanism; by default :meth:`cycle`.
+    all_circuits : bool
+        Whether the widget contains all circuits.
+    forces : sequence of Force
+        Forces drawn as arrows at their points.
+
+    Returns
+    -------
+    anywidget.AnyWidget
+        Its traits ``configuration`` and ``row`` select the displayed position and can be set;
+        see :func:`linkwork.app.motions_widget`.
+
+    Raises
+    ------
+    InputError
+        If there is nothing to draw, or both ``motion`` and ``all_circuits`` are given.
+    MissingPackageError
+        If anywidget is not installed.
+    """
+    if all_circuits and motion is not None:
+        raise InputError("a widget shows either the given motion or all circuits, not both")
+    motions = shown_motions(mechanism, motion, all_circuits)
+    equations = mechanism.equations().mathml()
+    return motions_widget(
+        motions, equations=equations, loops=partial(moving_loops, mechanism.model), forces=forces
+    )

@@ -15,6 +15,7 @@ from typing import Protocol
 
 import numpy as np
 
+from linkwork.app.pages.moving_scene import STILL, Frame, Moving, MovingScene, moving_scene
 from linkwork.app.pages.page_data import (
     FrameData,
     PackedColumn,
@@ -23,7 +24,6 @@ from linkwork.app.pages.page_data import (
     TurnData,
     TurnSource,
 )
-from linkwork.core.drawing.moving_scene import STILL, Frame, Moving, MovingScene, moving_scene
 from linkwork.core.drawing.scene import (
     XY,
     Arc,

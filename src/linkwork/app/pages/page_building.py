@@ -10,6 +10,7 @@ from typing import TypeVar
 
 import numpy as np
 
+from linkwork.app.pages.moving_scene import MovingScene, moving_scene
 from linkwork.app.pages.packing import Pack, packed, play_order, shapes_of
 from linkwork.app.pages.page_data import (
     AnswerData,
@@ -29,8 +30,8 @@ from linkwork.app.pages.page_data import (
     ThemeData,
     VectorData,
 )
+from linkwork.core.drawing.annotations import Force, check_forces, force_unit
 from linkwork.core.drawing.mechanism_scene import reach_of
-from linkwork.core.drawing.moving_scene import MovingScene, moving_scene
 from linkwork.core.drawing.pose import Pose, printed_formula, printed_name
 from linkwork.core.drawing.scene import COINCIDENT, DARK, LIGHT, Box, Role, Theme
 from linkwork.core.drawing.vectors import polygon
@@ -44,7 +45,6 @@ from linkwork.core.results.quantities.registry import Call
 from linkwork.core.results.quantities.rows import RECOMMENDED, TRANSMISSION_ANGLE
 from linkwork.core.results.quantity import Kind, Rate
 from linkwork.core.results.vector_loop import MovingLoop
-from linkwork.forces.results import Force, check_forces, force_unit
 from linkwork.writers.charts.chart import rate_label, size_label
 from linkwork.writers.charts.columns import lead_of
 
@@ -342,7 +342,7 @@ def motion_page(
         Shown as arrows at their points, the same over the whole motion.
     like : sequence of MovingScene
         The same motions drawn with other dimensions, see
-        :func:`~linkwork.core.drawing.moving_scene.moving_scene`.
+        :func:`~linkwork.app.pages.moving_scene.moving_scene`.
 
     Raises
     ------

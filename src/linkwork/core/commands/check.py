@@ -8,18 +8,14 @@ from textwrap import wrap
 
 import click
 
-from linkwork.core.commands.options import (
-    debug_option,
-    file_argument,
-    json_option,
-    read_mechanism,
-    set_option,
-)
+from linkwork.core.commands.options import file_argument, read_mechanism, set_option
 from linkwork.core.commands.terminal import (
     WIDTH,
     bad,
+    debug_option,
     fields,
     good,
+    json_option,
     print_json,
     print_lines,
     progress,

@@ -9,28 +9,31 @@ from pathlib import Path
 
 import click
 
-from linkwork.app.live.mechanism_file import blank_sheet
-from linkwork.app.task.templates import template_names
-from linkwork.core.commands.options import (
-    check_outputs,
+from linkwork import wings
+from linkwork.core.commands.options import check_outputs, text_to_copy, write_text
+from linkwork.core.commands.terminal import (
     debug_option,
+    fields,
     json_option,
-    text_to_copy,
-    write_text,
+    print_json,
+    print_lines,
+    title_lines,
 )
-from linkwork.core.commands.terminal import fields, print_json, print_lines, title_lines
 from linkwork.core.foundation.errors import InputError
 from linkwork.core.foundation.files import save_text
-from linkwork.core.textfile.reader import examples as example_names
+from linkwork.core.textfile.reader import blank_sheet, examples as example_names
 from linkwork.core.textfile.schema import schema_of, schema_text
-from linkwork.families.study.plan_keys import PLAN
-from linkwork.synthesis.tasks.task_keys import TASK
 
 # ----------------------------------------------------------------------
 # ``linkwork examples``
 
 
 _NO_FAMILY = "other"
+
+
+def _tasks() -> tuple[str, ...]:
+    """The names of tasks to begin with."""
+    return wings.use("synthesis.tasks.templates").template_names()
 
 
 @click.command("examples")
@@ -51,7 +54,12 @@ def examples_command(name: str | None, output: str | None, force: bool, as_json:
         if output is not None:
             raise InputError("-o needs the name of an example: linkwork examples NAME -o PATH")
         if as_json:
-            print_json({"examples": _entries(example_names()), "tasks": _entries(template_names())})
+            print_json(
+                {
+                    "examples": _entries(example_names()),
+                    "tasks": _entries(_tasks()),
+                }
+            )
         else:
             print_lines(_listing())
         return
@@ -69,7 +77,7 @@ def examples_command(name: str | None, output: str | None, force: bool, as_json:
     if as_json:
         print_json({"written": [output]})
     else:
-        command = "synthesize" if name in template_names() else "sweep"
+        command = "synthesize" if name in _tasks() else "sweep"
         print_lines([f"Wrote {output}. Next: linkwork {command} {output}"])
 
 
@@ -91,7 +99,7 @@ def _listing() -> list[str]:
     lines: list[str] = []
     for family in sorted(titles, key=lambda family: (family == _NO_FAMILY, family.casefold())):
         lines += [*title_lines(family), *fields(titles[family].items()), ""]
-    tasks = [(entry["name"], entry["title"]) for entry in _entries(template_names())]
+    tasks = [(entry["name"], entry["title"]) for entry in _entries(_tasks())]
     lines += [*title_lines("Tasks, for linkwork synthesize"), *fields(tasks), ""]
     return [*lines, "To copy an example: linkwork examples NAME -o FILE.toml"]
 
@@ -164,5 +172,6 @@ def schema_command(plan: bool, task: bool) -> None:
     """
     if plan and task:
         raise InputError("--plan and --task are two schemas: ask for one")
-    form = PLAN if plan else TASK if task else None
+    plans, tasks = "families.study.plan_keys", "synthesis.tasks.task_keys"
+    form = wings.use(plans).PLAN if plan else wings.use(tasks).TASK if task else None
     click.echo(schema_text(schema_of(form) if form else None), nl=False)

@@ -4,15 +4,17 @@ from __future__ import annotations
 
 import sys
 import traceback
-from importlib import import_module
 from typing import Any
 
 import click
 
-from linkwork.core.commands.options import DEBUG, JSON, debug_option
+from linkwork import wings
 from linkwork.core.commands.terminal import (
+    DEBUG,
     INTERRUPTED,
+    JSON,
     abandon_output,
+    debug_option,
     print_json,
     print_lines,
     ready_streams,
@@ -73,41 +75,6 @@ def _wrapped_or_formula(text: str, indent: str) -> list[str]:
 # The program ``linkwork``: its commands, and how errors become messages and exit codes.
 
 
-#: The modules of all commands, in the order in which they are usually needed.
-_COMMANDS = {
-    "check": "linkwork.core.commands.check",
-    "equations": "linkwork.core.commands.check",
-    "solve": "linkwork.core.commands.solve",
-    "quantities": "linkwork.core.commands.check",
-    "sweep": "linkwork.core.commands.sweep",
-    "configurations": "linkwork.circuits.commands",
-    "circuits": "linkwork.circuits.commands",
-    "forces": "linkwork.forces.commands",
-    "simulate": "linkwork.forces.commands",
-    "sensitivity": "linkwork.design.commands",
-    "tolerance": "linkwork.design.commands",
-    "design": "linkwork.design.commands",
-    "draw": "linkwork.core.commands.sweep",
-    "plot": "linkwork.writers.commands",
-    "animate": "linkwork.writers.commands",
-    "new": "linkwork.core.commands.files",
-    "import": "linkwork.readers.commands",
-    "view": "linkwork.app.commands",
-    "web": "linkwork.app.commands",
-    "link": "linkwork.app.commands",
-    "synthesize": "linkwork.synthesis.commands",
-    "atlas": "linkwork.synthesis.commands",
-    "code": "linkwork.writers.commands",
-    "export": "linkwork.writers.commands",
-    "robot": "linkwork.writers.commands",
-    "report": "linkwork.writers.commands",
-    "plates": "linkwork.writers.commands",
-    "study": "linkwork.families.commands",
-    "compile": "linkwork.families.commands",
-    "examples": "linkwork.core.commands.files",
-    "schema": "linkwork.core.commands.files",
-}
-
 _WRONG_INPUT = 2
 _OUR_FAULT = 3
 _READER_GONE = 128 + 13  # the shell's exit code after SIGPIPE
@@ -117,16 +84,19 @@ class _Program(click.Group):
     """The group of commands; it turns every error into a message and an exit code."""
 
     def list_commands(self, ctx: click.Context) -> list[str]:
-        """The commands in the order in which they are usually needed."""
-        return list(_COMMANDS)
+        """The commands of all wings."""
+        return [name for wing in wings.wings() for name in wing.commands]
 
     def get_command(self, ctx: click.Context, cmd_name: str) -> click.Command | None:
         """A command, imported only when it is called: imports take most of a short run."""
-        if cmd_name not in _COMMANDS:
-            return None
-        module = import_module(_COMMANDS[cmd_name])
-        command: click.Command = getattr(module, f"{cmd_name}_command")
-        return command
+        return wings.command(cmd_name)
+
+    def format_commands(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:
+        """The list of commands, wing by wing, without loading any."""
+        for wing in wings.wings():
+            if wing.commands:
+                with formatter.section(wing.title):
+                    formatter.write_dl(list(wing.commands.items()))
 
     def invoke(self, ctx: click.Context) -> object:
         """Run a command; turn an error into a message and an exit code."""

@@ -11,8 +11,10 @@ from typing import Any
 
 import click
 
-from linkwork.api.mechanism import Mechanism
-from linkwork.app.task.templates import template_names, template_text
+from linkwork import wings
+from linkwork.core.api.mechanism import Mechanism
+from linkwork.core.commands.terminal import Decorator
+from linkwork.core.drawing.annotations import Force, check_forces
 from linkwork.core.foundation.errors import ExpressionError, InputError, MechanismError
 from linkwork.core.foundation.files import save_pieces
 from linkwork.core.foundation.statuses import ChangePointPolicy
@@ -22,18 +24,9 @@ from linkwork.core.results.tables import Table, csv_lines
 from linkwork.core.textfile.link import is_link, source_text
 from linkwork.core.textfile.reader import example_text, examples, read_text
 from linkwork.core.textfile.toml_text import text_of
-from linkwork.forces.results import Force, check_forces
 
 # ----------------------------------------------------------------------
 # Options and arguments that several commands share.
-
-
-#: Key of ``click.Context.meta`` that stores ``--debug``.
-DEBUG = "linkwork.debug"
-#: Key that stores ``--json``.
-JSON = "linkwork.json"
-
-Decorator = Callable[[Callable[..., Any]], Callable[..., Any]]
 
 
 def number_or_formula(text: str) -> float | str:
@@ -57,31 +50,8 @@ class _Number(click.ParamType):  # type: ignore[type-arg]  # generic since click
 NUMBER = _Number()
 
 
-def _note_debug(context: click.Context, _: click.Parameter, wanted: bool) -> None:
-    if wanted:
-        context.meta[DEBUG] = True
-
-
-debug_option: Decorator = click.option(
-    "--debug",
-    is_flag=True,
-    is_eager=True,
-    expose_value=False,
-    callback=_note_debug,
-    help="Show the traceback of an error.",
-)
-
 file_argument: Decorator = click.argument("file", metavar="FILE")
 
-
-def _note_json(context: click.Context, _: click.Parameter, wanted: bool) -> bool:
-    context.meta[JSON] = wanted
-    return wanted
-
-
-json_option: Decorator = click.option(
-    "--json", "as_json", is_flag=True, is_eager=True, callback=_note_json, help="Print JSON."
-)
 
 set_option: Decorator = click.option(
     "--set",
@@ -341,7 +311,7 @@ def text_of_source(file: str) -> tuple[str, str]:
 
 def names_to_copy() -> tuple[str, ...]:
     """The mechanisms of the library, and the tasks to begin with."""
-    return (*examples(), *template_names())
+    return (*examples(), *wings.use("synthesis.tasks.templates").template_names())
 
 
 def text_to_copy(name: str) -> str:
@@ -352,7 +322,8 @@ def text_to_copy(name: str) -> str:
     UnknownNameError
         If there is none of this name.
     """
-    return template_text(name) if name in template_names() else example_text(name)
+    tasks = wings.use("synthesis.tasks.templates")
+    return tasks.template_text(name) if name in tasks.template_names() else example_text(name)
 
 
 def mechanism_of(text: str, name: str, changes: tuple[str, ...] = ()) -> Mechanism:

@@ -8,21 +8,21 @@ from typing import Any
 
 import click
 
-from linkwork.api.mechanism import Mechanism
+from linkwork.core.api.mechanism import Mechanism
 from linkwork.core.commands.options import (
     at_option,
     configuration_option,
-    debug_option,
     file_argument,
     input_values,
-    json_option,
     read_mechanism,
     set_option,
 )
 from linkwork.core.commands.terminal import (
     bad,
+    debug_option,
     fields,
     good,
+    json_option,
     print_json,
     print_lines,
     progress,

@@ -9,19 +9,18 @@ from typing import Any
 
 import click
 
-from linkwork.api.mechanism import Mechanism
+from linkwork import wings
+from linkwork.core.api.mechanism import Mechanism
 from linkwork.core.commands.options import (
     at_option,
     change_points_option,
     check_outputs,
     columns_option,
     configuration_option,
-    debug_option,
     file_argument,
     force_option,
     forces_of,
     input_values,
-    json_option,
     range_options,
     read_mechanism,
     set_option,
@@ -33,7 +32,9 @@ from linkwork.core.commands.options import (
 from linkwork.core.commands.solve import residual_measure
 from linkwork.core.commands.terminal import (
     bad,
+    debug_option,
     fields,
+    json_option,
     print_json,
     print_lines,
     print_written,
@@ -62,12 +63,9 @@ from linkwork.core.results.listing.motion_listing import (
     short,
     status_fields,
 )
-from linkwork.core.results.motion import Motion
-from linkwork.core.results.motion_table import table_of
+from linkwork.core.results.motion import Motion, table_of
 from linkwork.core.results.position import Position
 from linkwork.core.results.tables import Table
-from linkwork.writers.charts.plotting import motion_plot
-from linkwork.writers.workbook.workbook import check_xlsxwriter, workbook_of
 
 _FURTHER = 4  # further positions drawn in a sweep: every fifth of a crank's turn
 
@@ -89,7 +87,7 @@ def write_plot(motion: Motion, names: Sequence[str], path: str, over: str = "the
     if not motion.found.any():
         return f"Did not write {path}: there is no position to plot."
     with progress("drawing"):
-        write(motion_plot(motion, names), path)
+        write(wings.use("writers.charts.plotting").motion_plot(motion, names), path)
     return f"Wrote {path}: {', '.join(names) or 'unknowns and outputs'} over {over}."
 
 
@@ -218,7 +216,7 @@ def sweep_command(
             check_picture(name)
     check_outputs(file, csv, draw, plot, workbook=xlsx, as_json=as_json)
     if xlsx is not None:
-        check_xlsxwriter()
+        wings.use("writers").check_xlsxwriter()
     mechanism = read_mechanism(file, changes)
     if draw is not None:
         check_points(mechanism)
@@ -295,7 +293,7 @@ def _written_workbook(
 ) -> list[str]:
     """Write the workbook; returns lines about it and its values that do not recalculate."""
     with progress("writing the workbook") as tell:
-        found = workbook_of(mechanism.model, motion, columns, tell)
+        found = wings.use("writers").workbook_of(mechanism.model, motion, columns, tell)
     write_bytes(path, [found.content])
     rows = int(motion.asked.sum())
     said = [f"Wrote {path}: {rows} rows with formulas; edit a yellow cell to solve them again."]

@@ -22,11 +22,12 @@ import unicodedata
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager, suppress
 from types import FrameType
-from typing import Any, NoReturn
+from typing import TYPE_CHECKING, Any, NoReturn
 
 import click
 
-from linkwork.core.results.listing.motion_listing import Column
+if TYPE_CHECKING:
+    from linkwork.core.results.listing.motion_listing import Column
 
 #: The shell's exit code after SIGINT.
 INTERRUPTED = 128 + 2
@@ -369,3 +370,39 @@ def progress(label: str) -> Iterator[Callable[[float], None]]:
             bar.__exit__(None, None, None)
         elif time.monotonic() - began > _PATIENCE:
             click.echo(_CLEAR_LINE, file=sys.stderr, nl=False)
+
+
+#: Key of ``click.Context.meta`` that stores ``--debug``.
+DEBUG = "linkwork.debug"
+
+
+#: Key that stores ``--json``.
+JSON = "linkwork.json"
+
+
+Decorator = Callable[[Callable[..., Any]], Callable[..., Any]]
+
+
+def _note_debug(context: click.Context, _: click.Parameter, wanted: bool) -> None:
+    if wanted:
+        context.meta[DEBUG] = True
+
+
+debug_option: Decorator = click.option(
+    "--debug",
+    is_flag=True,
+    is_eager=True,
+    expose_value=False,
+    callback=_note_debug,
+    help="Show the traceback of an error.",
+)
+
+
+def _note_json(context: click.Context, _: click.Parameter, wanted: bool) -> bool:
+    context.meta[JSON] = wanted
+    return wanted
+
+
+json_option: Decorator = click.option(
+    "--json", "as_json", is_flag=True, is_eager=True, callback=_note_json, help="Print JSON."
+)

@@ -11,12 +11,12 @@ import numpy as np
 from linkwork.core.drawing.labels import Choice, places_beside
 from linkwork.core.drawing.pose import Pose, printed_name
 from linkwork.core.drawing.scene import Box, Disc, Measures, Polyline, Primitive, Role, xy
-from linkwork.core.foundation.errors import InputError, internal
+from linkwork.core.foundation.errors import InputError, UnknownNameError, choices, internal
+from linkwork.core.foundation.values import check_values
 from linkwork.core.results.motion import Motion
 from linkwork.core.results.position import Position
 from linkwork.core.results.quantity import Kind, Rate
 from linkwork.core.results.vector_loop import VectorLoop
-from linkwork.forces.results import Force, check_forces, force_unit
 
 _SHORT = (1.0, 1.5, 2.0, 2.5, 3.0, 4.0, 5.0, 6.0, 8.0, 10.0)
 
@@ -368,3 +368,70 @@ def force_arrows(
         listed = ", ".join(map(printed_name, dict.fromkeys(hidden_at)))
         caption += f" (too short to draw: {listed})"
     return Annotation.joined([*parts, Annotation(caption=caption)])
+
+
+@dataclass(frozen=True, kw_only=True)
+class Force:
+    """A force at a point, for drawings and pages; it is given, not computed.
+
+    Parameters
+    ----------
+    at : str
+        The name of the point.
+    x, y : float
+        Components along the axes of the ground, in ``unit``.
+    unit : str
+        For example ``N``; all forces of a picture have the same unit.
+
+    Raises
+    ------
+    InputError
+        If a component is not finite.
+
+    Examples
+    --------
+    >>> import linkwork as lw
+    >>> lw.forces.Force(at="B", x=0, y=-981, unit="N")
+    Force(at='B', x=0, y=-981, unit='N')
+    """
+
+    at: str
+    x: float
+    y: float
+    unit: str = ""
+
+    def __post_init__(self) -> None:
+        check_values(self)
+        if not (math.isfinite(self.x) and math.isfinite(self.y)):
+            raise InputError(f"the force at {self.at} is not finite: {self.x:g}, {self.y:g}")
+
+
+def force_unit(forces: Iterable[Force]) -> str:
+    """The unit that all forces have.
+
+    Raises
+    ------
+    InputError
+        If they have different ones.
+    """
+    units = dict.fromkeys(force.unit for force in forces)
+    if len(units) > 1:
+        listed = ", ".join(unit or "none" for unit in units)
+        raise InputError(f"forces of one picture need one unit, these have several: {listed}")
+    return next(iter(units), "")
+
+
+def check_forces(forces: Iterable[Force], points: Iterable[str]) -> None:
+    """Refuse forces at points that are not there, and units that differ.
+
+    Raises
+    ------
+    UnknownNameError, InputError
+    """
+    known, every = tuple(points), tuple(forces)
+    for force in every:
+        if force.at not in known:
+            raise UnknownNameError(
+                f'there is no point "{force.at}" for a force {choices("points", known, force.at)}'
+            )
+    force_unit(every)

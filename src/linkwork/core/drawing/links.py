@@ -12,7 +12,6 @@ from itertools import product
 
 import numpy as np
 
-from linkwork.contacts.cams import Follower
 from linkwork.core.drawing.pose import Pose
 from linkwork.core.drawing.scene import (
     COINCIDENT,
@@ -27,7 +26,7 @@ from linkwork.core.drawing.scene import (
     xy,
 )
 from linkwork.core.foundation.arrays import ComplexArray
-from linkwork.core.mechanism.bodies import Contour, DiscFigure as Wheel, Guide
+from linkwork.core.mechanism.bodies import Contour, DiscFigure as Wheel, Follower, Guide
 from linkwork.core.mechanism.skeleton import Bar, Skeleton
 
 

@@ -6,10 +6,10 @@ import math
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from itertools import chain
+from typing import TYPE_CHECKING
 
 import numpy as np
 
-from linkwork.circuits.results import Configurations
 from linkwork.core.drawing.annotations import SceneOptions
 from linkwork.core.drawing.dimensions import Subject, annotation_of
 from linkwork.core.drawing.guides import Track, guide_symbols, track_gaps, tracks
@@ -44,6 +44,9 @@ from linkwork.core.mechanism.bodies import Contour, DiscFigure
 from linkwork.core.mechanism.part.guides import GenevaWheel
 from linkwork.core.results.motion import Motion
 from linkwork.core.results.position import Position
+
+if TYPE_CHECKING:
+    from linkwork.circuits.results import Configurations
 
 _OF_OUTLINE = 90  # points of an outline that are tracked over a motion
 

@@ -11,9 +11,11 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
+from typing import Any
 
 import numpy as np
 
+from linkwork import wings
 from linkwork.core.equations.model import FormulaRow, LawEquation, LoopEquations, Term
 from linkwork.core.expression.tree import names_in
 from linkwork.core.foundation.arrays import Array, BoolArray, ComplexArray, IndexArray
@@ -28,11 +30,14 @@ from linkwork.core.numerics.decomposition import BlockForm, block_form
 from linkwork.core.numerics.local_parametrization import Parametrization
 from linkwork.core.table.loop_table import LoopTable, TableSplitter
 from linkwork.core.table.rows import LawRow, LinearRows, PhasorRows
-from linkwork.families.single.quick_rows import quick_rows
 
 _MOST_LOOPS = 6  # C(12, 6) = 924 paths for a random system
 _DEPENDENT = 1e-12  # smallest singular value of a closure matrix, relative to the largest
 _WHOLE = 1e-12  # tolerance of integer weights
+
+
+def _make_quick() -> Any:
+    return wings.use("families.single.quick_rows").quick_rows
 
 
 class NoDirectionForm(Exception):
@@ -394,7 +399,7 @@ class LeaderSolvers:
         order: IndexArray = np.array([*others, lead], dtype=np.intp)
         scale = table.variable_scale[order]
         return BlockSolver(
-            blocks, len(others), table.variables, scale, make_quick=quick_rows
+            blocks, len(others), table.variables, scale, make_quick=_make_quick()
         ), order
 
 
@@ -650,7 +655,7 @@ def compile_equations(equations: LoopEquations, where: str) -> Compiled:
                 variables=np.array([*unknowns, *known], dtype=np.intp),
             )
         )
-    solver = BlockSolver(blocks, n, table.variables, table.variable_scale, make_quick=quick_rows)
+    solver = BlockSolver(blocks, n, table.variables, table.variable_scale, make_quick=_make_quick())
     return Compiled(
         equations=equations,
         table=table,

@@ -73,7 +73,7 @@ class InputError(LinkworkError):
     --------
     >>> import linkwork as lw
     >>> try:
-    ...     lw.Force(at="B", x=float("nan"), y=0)
+    ...     lw.forces.Force(at="B", x=float("nan"), y=0)
     ... except lw.InputError as error:
     ...     print(error)
     the force at B is not finite: nan, 0

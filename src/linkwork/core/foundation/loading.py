@@ -23,8 +23,8 @@ def loader(package: str) -> Callable[[str], object]:
     """The ``__getattr__`` (PEP 562) of a package, with its ``__all__`` and ``__dir__``.
 
     The public names of a package are written once, in its block for type checkers, as
-    ``from linkwork.package.module import Name as Name``. Such a line is carried out when its name
-    is first used.
+    ``from linkwork.package.module import Name as Name``, or ``from linkwork import package as
+    package``. Such a line is carried out when its name is first used.
 
     Parameters
     ----------
@@ -58,6 +58,8 @@ def loader(package: str) -> Callable[[str], object]:
             return sorted(homes())
         if name.startswith("__") or name not in homes():
             raise AttributeError(f"module {package!r} has no attribute {name!r}")
+        if homes()[name] == package:
+            return import_module(f"{package}.{name}")
         value: object = getattr(import_module(homes()[name]), name)
         # importing a module puts it into its package under its own name, over a name it provides
         for own, home in homes().items():

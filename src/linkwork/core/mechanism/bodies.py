@@ -294,3 +294,24 @@ class Guide(Figure):
     @property
     def pins(self) -> tuple[str, ...]:
         return () if self.block else (self.point,)
+
+
+class CamOutline(Contour):
+    """The outline of a cam."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class Follower(Figure):
+    """The follower of a cam: ``point`` is the knife edge, the roller's centre or on the face.
+
+    It moves on a ``slider`` or swings about ``pivot``. ``center`` is that of the cam.
+    """
+
+    shown_again: ClassVar[bool] = True
+
+    link: str
+    point: str
+    center: str
+    contact: str
+    slider: str | None = None
+    pivot: str | None = None

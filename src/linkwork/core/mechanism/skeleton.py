@@ -10,7 +10,13 @@ from itertools import combinations
 from typing import TypeVar
 
 from linkwork.core.foundation.names import GROUND, canonical, free_name
-from linkwork.core.mechanism.bodies import DiscFigure, Figure, Guide, Mesh, Outlines
+from linkwork.core.mechanism.bodies import (
+    DiscFigure,
+    Figure,
+    Guide,
+    Mesh,
+    Outlines,
+)
 from linkwork.core.mechanism.description import Question
 from linkwork.core.mechanism.dimensions import Number
 from linkwork.core.mechanism.linkage import Draft, Linkage

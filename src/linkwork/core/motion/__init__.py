@@ -7,20 +7,8 @@ from typing import TYPE_CHECKING
 from linkwork.core.foundation.loading import loader
 
 if TYPE_CHECKING:
-    from linkwork.circuits.circuit_list import branch_start as branch_start, circuits as circuits
-    from linkwork.circuits.configuration_list import (
-        configurations as configurations,
-        solve_configuration as solve_configuration,
-        start_in_configuration as start_in_configuration,
-    )
-    from linkwork.circuits.inverting import (
-        driven_otherwise as driven_otherwise,
-        inversion as inversion,
-        inversions as inversions,
-    )
     from linkwork.core.motion.checking import check as check
     from linkwork.core.motion.extremes import check_quantities as check_quantities
-    from linkwork.core.motion.failure.remedies import nearest_assembly as nearest_assembly
     from linkwork.core.motion.higher_rates import derivatives_of as derivatives_of
     from linkwork.core.motion.iterating import (
         guessed_points as guessed_points,

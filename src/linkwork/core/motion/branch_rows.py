@@ -12,6 +12,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from linkwork import wings
 from linkwork.core.foundation.arrays import Array, BoolArray, IndexArray
 from linkwork.core.foundation.rounding import EPSILON, LARGEST_POLISH
 from linkwork.core.foundation.statuses import Certification, ChangePointPolicy, Status
@@ -35,7 +36,6 @@ from linkwork.core.numerics.passage import Passage, pass_change_points
 from linkwork.core.numerics.position_proof import Proof, prove
 from linkwork.core.numerics.system import SolvedRows
 from linkwork.core.numerics.turning_point import TurnAhead
-from linkwork.families import by_kernels
 
 
 def fill_last_rows(
@@ -356,7 +356,7 @@ def _rows_followed(
 
     Compiled kernels need no track where they find all rows.
     """
-    quickly = by_kernels.kernels_pay(drive.model, len(asked.t))
+    quickly = wings.use("families.by_kernels").kernels_pay(drive.model, len(asked.t))
     if quickly and passage is None and not asked.with_track:
         found = _by_kernels(drive, anchor, asked, certify)
         if found is not None:
@@ -398,7 +398,7 @@ def _kernel_rows(
 ) -> SolvedRows | None:
     """Rows at the values ``placed`` (B,) of t; proofs are left out if they are not asked for."""
     spread = inputs_apart(drive.path.at(placed), asked.inputs).max(axis=0)
-    rows = by_kernels.kernel_rows(drive, anchor, placed, spread)
+    rows = wings.use("families.by_kernels").kernel_rows(drive, anchor, placed, spread)
     return rows if rows is None or certify else unproved(rows, Certification.NOT_ASKED)
 
 

@@ -7,11 +7,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from linkwork.circuits.classification import NotSeen, as_linkage, block_groups, classify
+from linkwork import wings
 from linkwork.core.foundation.arrays import Array
 from linkwork.core.foundation.rounding import RANK_TOLERANCE
 from linkwork.core.foundation.statuses import Status
-from linkwork.core.mechanism.chain import missing
 from linkwork.core.mechanism.linkage import Linkage
 from linkwork.core.mechanism.loops import Loops
 from linkwork.core.motion.model import FITS, Model, largest_misfits, misfit, mobility_by_rank
@@ -137,8 +136,9 @@ def check(model: Model) -> CheckReport:
     """Report loops, unknowns, blocks and mobility of a mechanism; try its start position."""
     description, equations = model.description, model.equations
     start = first_position(model, model.start_inputs, NewtonOptions())
-    seen = as_linkage(model)
-    linkage = None if isinstance(seen, NotSeen) else seen.linkage
+    chains = wings.use("circuits.classification")
+    seen = chains.as_linkage(model)
+    linkage = None if isinstance(seen, chains.NotSeen) else seen.linkage
     mobility = mobility_of(model, linkage, start.v if start.status.ok else None)
     measured: tuple[tuple[str, str, float], ...] = ()
     links = joints = 0
@@ -154,8 +154,8 @@ def check(model: Model) -> CheckReport:
         links = len(linkage.links) + len(bodies)
         joints = pins(linkage) + sum(part.kind is not None for part in linkage.parts) - len(bodies)
     units = model.units
-    if lacking := missing():  # in a browser
-        seen = NotSeen(lacking)
+    if lacking := wings.use("circuits.chain").missing():  # in a browser
+        seen = chains.NotSeen(lacking)
     return CheckReport(
         mechanism=description.name,
         form=form,
@@ -172,7 +172,7 @@ def check(model: Model) -> CheckReport:
                 group=group,
             )
             for block, group in zip(
-                model.compiled.solver.blocks, block_groups(model, seen), strict=True
+                model.compiled.solver.blocks, chains.block_groups(model, seen), strict=True
             )
         ),
         mobility_count=mobility.count,
@@ -189,8 +189,8 @@ def check(model: Model) -> CheckReport:
         },
         residual=start.residual,
         failure=start.failure,
-        classification=None if isinstance(seen, NotSeen) else classify(seen),
-        unclassified=seen.why if isinstance(seen, NotSeen) else "",
+        classification=None if isinstance(seen, chains.NotSeen) else chains.classify(seen),
+        unclassified=seen.why if isinstance(seen, chains.NotSeen) else "",
     )
 
 

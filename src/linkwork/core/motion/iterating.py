@@ -7,6 +7,7 @@ from collections.abc import Mapping
 
 import numpy as np
 
+from linkwork import wings
 from linkwork.core.equations.model import Term
 from linkwork.core.equations.notation import PlainText
 from linkwork.core.expression.tree import NumberNode
@@ -14,7 +15,6 @@ from linkwork.core.foundation.arrays import Array
 from linkwork.core.foundation.errors import InputError, UnknownNameError, choices
 from linkwork.core.foundation.names import as_name
 from linkwork.core.foundation.values import as_told, check_class, given_or, is_listed, plain_number
-from linkwork.core.motion.failure.remedies import open_ends
 from linkwork.core.motion.model import Model
 from linkwork.core.motion.positions import Named, name_series, target_values
 from linkwork.core.motion.solving import solve
@@ -205,7 +205,9 @@ class _Seen:
                 jacobian=tuple(tuple(map(float, line)) for line in jacobians[row]),
                 step=None if change is None else float(np.abs(change / weights).max()),
                 points=points[row],
-                apart=open_ends(model, named, points[row], row),
+                apart=wings.use("circuits.failure.remedies").open_ends(
+                    model, named, points[row], row
+                ),
             )
             for row, (k, _, residual, change) in enumerate(self.kept)
         ]

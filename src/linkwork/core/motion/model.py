@@ -9,6 +9,7 @@ from functools import cached_property
 
 import numpy as np
 
+from linkwork import wings
 from linkwork.core.equations.compiling import Compiled, compile_equations
 from linkwork.core.equations.from_linkage import write_loops
 from linkwork.core.equations.from_loops import read_loops, read_plain_equations
@@ -16,7 +17,6 @@ from linkwork.core.equations.input_motion import driven_by_time
 from linkwork.core.equations.model import LoopEquations, Output, Variable
 from linkwork.core.expression.tree import Name, names_in
 from linkwork.core.foundation.arrays import Array
-from linkwork.core.foundation.containers import presenter
 from linkwork.core.foundation.errors import (
     ExpressionError,
     InputError,
@@ -347,7 +347,7 @@ class Model:
         """The efforts of the inputs and the reactions of the joints; none without loads."""
         if not getattr(self.description, "loaded", False):
             return ()
-        return presenter(Model.force_quantities)(self)
+        return wings.use("forces").force_quantities(self)
 
     def beside_switches(self, at: Callable[[Array], Solved], t: Array) -> Array:
         """Places just before and just behind all switches of loads between rising values t (B,) of
@@ -355,7 +355,7 @@ class Model:
         """
         if not getattr(self.description, "loaded", False):
             return np.zeros(0)
-        return presenter(Model.beside_switches)(self, at, t)
+        return wings.use("forces").beside_switches(self, at, t)
 
     def derivatives(self, solved: Solved, asked: Asked, order: int) -> Array:
         """The derivatives of a quantity with respect to the leading input, from the first to one of
@@ -366,7 +366,9 @@ class Model:
         InputError
             For plain equations, for formulas, and for a family.
         """
-        return presenter(Model.derivatives)(self, solved, asked, order)
+        from linkwork.core.motion.higher_rates import derivatives_of
+
+        return derivatives_of(self, solved, asked, order)
 
     @cached_property
     def motion_quantities(self) -> Quantities:

@@ -8,13 +8,13 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from linkwork.core import motion
+from linkwork import wings
 from linkwork.core.foundation.arrays import Array
 from linkwork.core.foundation.errors import InputError, MechanismError, NotConvergedError, Problem
 from linkwork.core.foundation.statuses import Certification, Status
 from linkwork.core.foundation.values import check_flags, given_or
 from linkwork.core.mechanism.description import Description
-from linkwork.core.motion import failure as why, followed as following
+from linkwork.core.motion import followed as following
 from linkwork.core.motion.model import (
     FITS,
     Model,
@@ -78,11 +78,13 @@ def first_position(
     status = Status.of_code(int(done.status[0]))
     failure = None
     if not status.ok and explained:
-        status, failure = why.no_position(model, v, status, int(done.failed_block[0]), options)
+        status, failure = wings.use("circuits.failure").no_position(
+            model, v, status, int(done.failed_block[0]), options
+        )
     if status.ok and not roots_proved(solver, done.v)[0]:
         status = Status.ROOT_NOT_PROVED
         if explained:
-            failure = why.root_not_proved(model, v, done.v[0], options)
+            failure = wings.use("circuits.failure").root_not_proved(model, v, done.v[0], options)
     trails = []
     for k, watcher in enumerate(watchers):
         if watcher.steps:
@@ -198,7 +200,7 @@ def solve(
             and not from_guess
             and not np.array_equal(inputs, model.start_inputs)
         ):
-            failure = why.without_start(model, failure, inputs)
+            failure = wings.use("circuits.failure").without_start(model, failure, inputs)
         position = failed_position(model, target, start.status, failure, start)
     elif from_guess or np.array_equal(inputs, model.start_inputs):
         found = _arrived(model, start, certify)
@@ -208,7 +210,9 @@ def solve(
         if isinstance(reached, following.OutOfReach):
             position = failed_position(model, target, reached.status, reached.failure, start)
         elif reached.status.ok and not roots_proved(model.compiled.solver, reached.v[None, :])[0]:
-            failure = why.root_not_proved(model, start.v, reached.v, options)
+            failure = wings.use("circuits.failure").root_not_proved(
+                model, start.v, reached.v, options
+            )
             last = replace(start, v=reached.v, residual=reached.residual)
             position = failed_position(model, target, Status.ROOT_NOT_PROVED, failure, last)
         else:
@@ -253,7 +257,7 @@ def _other_root(model: Model, found: Array) -> Failure | None:
         slopes = block.system.jacobian(both)[:, :, : len(block.unknowns)]
         # the guess and the position lie on different sides of a dead point
         if np.prod(np.sign(np.linalg.det(slopes))) <= 0.0:
-            return why.another_root(model, found)
+            return wings.use("circuits.failure").another_root(model, found)
         # the next block is compared with its known variables as solved
         here[block.unknowns] = found[block.unknowns]
     return None
@@ -345,7 +349,7 @@ def as_described(description: Description) -> Model:
     if not description.configuration:
         return model
     try:
-        return motion.start_in_configuration(model, description.configuration)
+        return wings.use("circuits").start_in_configuration(model, description.configuration)
     except InputError as error:
         problem = Problem(key=("configuration",), message=str(error))
         raise MechanismError([problem], f'mechanism "{description.name}"') from None

@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from linkwork.circuits.circuit_sweep import further_branches
+from linkwork import wings
 from linkwork.core.foundation.arrays import BoolArray
 from linkwork.core.foundation.errors import InputError
 from linkwork.core.foundation.statuses import Certification, ChangePointPolicy, CircuitEnd, Status
@@ -29,6 +29,7 @@ from linkwork.core.motion.model import FITS, Model, leading_input, misfit
 from linkwork.core.motion.rows_between import RowsBetween, fitting, message_of, motion_of_rows
 from linkwork.core.motion.solving import Start, first_position
 from linkwork.core.motion.sweep_table import NamedEnd, SweepTable
+from linkwork.core.motion.whole_turns import warm_started
 from linkwork.core.numerics.branch_tracking import Node, Track
 from linkwork.core.numerics.local_parametrization import coincide, whole_turns
 from linkwork.core.numerics.newton import NewtonOptions
@@ -270,7 +271,9 @@ class _Sweep:
         if self.branches[0].found.proved_to_ends or not self.certify:
             # a regular start: the circuit is traced from there, and a dead point cannot lead it
             anchor = min(track.nodes, key=self._steepness)
-        around = further_branches(self.drive, anchor.v, asked, self.report, self.certify)
+        around = wings.use("circuits.circuit_sweep").further_branches(
+            self.drive, anchor.v, asked, self.report, self.certify
+        )
         self.circuit = around.end
         placed: list[BranchEnd] = []
         for branch in around.branches:
@@ -392,3 +395,19 @@ def _without_start(model: Model, start: Start) -> Motion:
     nothing_added = np.zeros(len(rows), dtype=bool)
     motion = motion_of_rows(model, rows, start.message, nothing_added)
     return replace(motion, failure=start.failure)
+
+
+def approximate_sweep(model: Model, neighbour: Motion | None = None) -> Motion:
+    """The cycle of a slightly changed mechanism, without proofs.
+
+    It is many times faster than :func:`sweep`: Newton-Raphson starts from the positions of the
+    neighbour, at all rows together. If that is not safe, the branch is followed again; see
+    :func:`linkwork.core.motion.whole_turns.warm_started`.
+
+    Parameters
+    ----------
+    neighbour : Motion, optional
+        The cycle of a mechanism with slightly different numbers.
+    """
+    started = None if neighbour is None else warm_started(model, neighbour)
+    return sweep(model, certify=False, explained=False) if started is None else started

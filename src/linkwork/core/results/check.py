@@ -207,7 +207,7 @@ class Inversion:
     Examples
     --------
     >>> import linkwork as lw
-    >>> for inversion in lw.example("four-bar").inversions():
+    >>> for inversion in lw.circuits.inversions(lw.example("four-bar")):
     ...     print(inversion.ground, "->", inversion.type.partition(":")[0])
     ground -> crank-rocker (GCRR)
     crank -> double-crank (GCCC)

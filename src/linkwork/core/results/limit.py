@@ -20,7 +20,7 @@ class LimitKind(Enum):
     Examples
     --------
     >>> import linkwork as lw
-    >>> lw.LimitKind.DEAD_POINT.word
+    >>> lw.core.results.LimitKind.DEAD_POINT.word
     'dead point'
     """
 

@@ -11,9 +11,10 @@ from typing import Any
 
 import numpy as np
 
+from linkwork import wings
 from linkwork.core.expression.derivatives import Jet
 from linkwork.core.foundation.arrays import Array, BoolArray, ComplexArray, CountArray
-from linkwork.core.foundation.containers import FrozenDict, presenter, read_only
+from linkwork.core.foundation.containers import FrozenDict, read_only
 from linkwork.core.foundation.errors import UnknownNameError, choices, internal
 from linkwork.core.foundation.names import as_name, find_spelling
 from linkwork.core.foundation.rounding import EQUAL_ROWS
@@ -31,7 +32,7 @@ from linkwork.core.results.quantities.located_rows import (
 from linkwork.core.results.quantities.registry import EVIDENCE, Quantities
 from linkwork.core.results.quantity import Rate, Units
 from linkwork.core.results.series import Series
-from linkwork.core.results.tables import Table
+from linkwork.core.results.tables import Column, Summary, Table
 
 # long: more than half are the descriptions and examples of public methods.
 
@@ -372,7 +373,7 @@ class Motion:
         >>> lw.example("four-bar").sweep(start=0, stop=90, step=30).table("rocker", "B.x")
         <Table of 4 rows over crank, 4 columns: crank [deg], rocker [deg], B.x [mm], status>
         """
-        return presenter(Motion.table)(self, *names)
+        return table_of(self, *names)
 
     def to_pandas(self) -> Any:
         """A pandas DataFrame with the input as index."""
@@ -426,7 +427,7 @@ class Motion:
         MissingPackageError
             If Matplotlib is not installed.
         """
-        return presenter(Motion.plot)(
+        return wings.use("writers").plot_motion(
             self,
             *names,
             kind=kind,
@@ -465,7 +466,7 @@ class Motion:
         MissingPackageError
             If the package that writes the format is not installed.
         """
-        presenter(Motion.animate)(self, path, options=options, progress=progress)
+        wings.use("app").animate_motion(self, path, options=options, progress=progress)
 
     def widget(self) -> Any:
         """The motion as a notebook widget to play and drag; needs the extra ``notebook``.
@@ -482,14 +483,14 @@ class Motion:
         MissingPackageError
             If anywidget is not installed.
         """
-        return presenter(Motion.widget)(self)
+        return wings.use("app").motion_widget(self)
 
     def __repr__(self) -> str:
-        return presenter(Motion.__repr__)(self)
+        return motion_text(self)
 
     def _repr_html_(self) -> str:
         """A picture and a short table, for notebooks."""
-        return presenter(Motion._repr_html_)(self)
+        return wings.use("app").motion_html(self)
 
     @property
     def counts(self) -> Counter[Status]:
@@ -554,3 +555,94 @@ def is_in_table(limit: Limit, motion: Motion) -> bool:
         return low - slack <= limit.input <= high + slack
     away = (limit.input - low) % turn
     return bool(away <= high - low + slack or away > turn - slack)
+
+
+def table_of(motion: Motion, *names: str) -> Table:
+    """Columns of a motion: inputs, unknowns, points, outputs, derivatives, rates, evidence.
+
+    ``<name>.d1`` and ``.d2`` are derivatives with respect to the leading input, angles in radians;
+    ``.velocity`` and ``.acceleration`` appear when the input has a speed.
+
+    Parameters
+    ----------
+    names : str
+        Only these quantities and rates, between the inputs and the status.
+
+    Raises
+    ------
+    UnknownNameError
+        With the nearest names.
+    """
+    units = motion.units
+    columns: dict[str, Column] = {}
+    unit_of: dict[str, str] = {}
+
+    def add(name: str, values: Column, unit: str) -> None:
+        columns[name], unit_of[name] = values, unit
+
+    for name, values in motion.inputs.items():
+        add(name, values, motion.input_units[name])
+    if names:
+        for quantity in map(motion.quantity, names):
+            add(quantity.name, motion[quantity.name], quantity.unit)
+        add("status", np.array([status.name for status in motion.status]), "")
+        return Table(columns=columns, units=unit_of, index=next(iter(motion.inputs)))
+    everything: dict[str, Series] = dict(motion.unknowns)
+    everything |= {link: motion.links[link] for link in motion.riding}
+    for x, y in motion.points.values():
+        everything[x.quantity.name], everything[y.quantity.name] = x, y
+    everything |= motion.outputs
+    for name, series in everything.items():
+        add(name, series.value, units.of(series.quantity.kind))
+    known = (rate for rate in Rate if not rate.needs_series)
+    asked = [rate for rate in known if not (rate.by_time and motion.speed is None)]
+    for pair in (asked[:2], asked[2:]):
+        for name, series in everything.items():
+            kind = series.quantity.kind
+            for rate in pair:
+                values = rate.of(series.first, series.second, motion.speed)
+                unit = rate.unit(kind, units, motion.derivative_unit)
+                add(f"{name}.{rate.value}", values, unit)
+    add("status", np.array([status.name for status in motion.status]), "")
+    add("residual", motion.residual, "")
+    add("iterations", motion.iterations, "")
+    add("condition", motion.condition, "")
+    add("certified", motion.certified, "")
+    add("branch", np.array(motion.branch, dtype=str), "")
+    add("limit", np.array(motion.limit, dtype=str), "")
+    return Table(columns=columns, units=unit_of, index=next(iter(motion.inputs)))
+
+
+def motion_summary(motion: Motion) -> Summary:
+    """Range of the input, counts by status, limits, worst evidence, ranges of the unknowns."""
+    name, values = next(iter(motion.inputs.items()))
+    values = values[motion.asked]
+    unit = motion.input_units[name]
+    head = (
+        f"Motion of {motion.mechanism}, {name} {values[0]:.10g} to {values[-1]:.10g} {unit}, "
+        f"{len(values)} positions"
+    )
+    rows = [(s.label, str(n)) for s, n in motion.counts.most_common()]
+    rows += [(limit.kind.word, f"{limit.input:.10g} {unit}") for limit in motion.limits]
+    rows += [
+        (extreme.kind, f"{extreme.name} = {extreme.value:.10g} at {extreme.input:.10g} {unit}")
+        for extreme in motion.output_limits
+    ]
+    if motion.circuit is not None:
+        rows.append(("circuit", motion.circuit.value))
+    found = motion.found
+    if found.any():
+        rows.append(("certified", f"{int(motion.certified.sum())} of {int(found.sum())}"))
+        rows.append(("worst residual", f"{motion.worst:.1e} of the longest link"))
+        regular = motion.condition[np.isfinite(motion.condition)]  # not so at dead points
+        if len(regular):
+            rows.append(("worst condition", f"{regular.max():.3g}"))
+        for own, series in {**motion.unknowns, **motion.outputs}.items():
+            reached, unit = series.value[found], motion.units.of(series.quantity.kind)
+            rows.append((own, f"{reached.min():.8g} … {reached.max():.8g} {unit}".rstrip()))
+    return Summary(head, tuple(rows))
+
+
+def motion_text(motion: Motion) -> str:
+    """The summary as text; see :class:`linkwork.core.results.motion.Motion`."""
+    return str(motion_summary(motion))

@@ -8,9 +8,10 @@ from typing import Any
 
 import numpy as np
 
+from linkwork import wings
 from linkwork.core.expression.derivatives import Jet
 from linkwork.core.foundation.arrays import Array
-from linkwork.core.foundation.containers import FrozenDict, presenter, read_only
+from linkwork.core.foundation.containers import FrozenDict, read_only
 from linkwork.core.foundation.errors import internal
 from linkwork.core.foundation.statuses import Certification, Status
 from linkwork.core.mechanism.skeleton import Skeleton
@@ -264,7 +265,7 @@ class Position:
 
     def _repr_html_(self) -> str:
         """A picture and a short table, for notebooks."""
-        return presenter(Position._repr_html_)(self)
+        return wings.use("app").position_html(self)
 
     def to_dict(self) -> dict[str, Any]:
         """The position as JSON-ready data: NaN becomes null, the status its member name.

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 from collections.abc import Iterable, Set
 from dataclasses import dataclass
 from pathlib import Path
@@ -339,3 +340,8 @@ def example_text(name: str) -> str:
     if as_name(name) not in known:
         raise UnknownNameError(f'there is no example "{name}" {choices("examples", known, name)}')
     return (_FOLDER / f"{name}.toml").read_text(encoding="utf-8")
+
+
+def blank_sheet(name: str) -> str:
+    """The text of a mechanism without points."""
+    return f'format = 1\nname = {json.dumps(name, ensure_ascii=False)}\nlength = "mm"\n'

@@ -11,6 +11,7 @@ from weakref import WeakKeyDictionary
 
 import numpy as np
 
+from linkwork.circuits.configuration_list import solve_configuration
 from linkwork.core import motion
 from linkwork.core.equations.input_motion import TIME
 from linkwork.core.expression.derivatives import Jet
@@ -354,7 +355,7 @@ class _Search:
         if self.configuration is None:
             position = motion.solve(self.model, value)
         else:
-            position = motion.solve_configuration(self.model, value, self.configuration)
+            position = solve_configuration(self.model, value, self.configuration)
         found = forces_of_position(self.model, position)
         if found.status not in (*_MOVES, ForceStatus.SELF_LOCKING):
             return None

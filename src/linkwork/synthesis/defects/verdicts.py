@@ -29,7 +29,7 @@ class DefectKind(Enum):
     Examples
     --------
     >>> import linkwork as lw
-    >>> lw.DefectKind.CIRCUIT.value
+    >>> lw.synthesis.DefectKind.CIRCUIT.value
     'circuit changes'
     """
 
@@ -379,7 +379,7 @@ class JudgedDesign(ABC):
     >>> import linkwork as lw
     >>> task = lw.Task.function("log10(x)", x=(1, 2), input=(45, 105), output=(0, 90))
     >>> design = task.solve().delivered[0]
-    >>> isinstance(design, lw.JudgedDesign), design.number, design.driven
+    >>> isinstance(design, lw.synthesis.JudgedDesign), design.number, design.driven
     (True, 1, 'A0')
     """
 

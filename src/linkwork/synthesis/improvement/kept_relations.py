@@ -7,7 +7,6 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from linkwork.app.edits.unit_change import FileDegrees
 from linkwork.core.foundation.arrays import Array
 from linkwork.core.foundation.errors import LinkworkError
 from linkwork.core.foundation.names import GROUND
@@ -18,6 +17,7 @@ from linkwork.core.motion.sweeping import sweep
 from linkwork.core.results.motion import Motion
 from linkwork.core.textfile.toml_text import data_of
 from linkwork.core.textfile.writer import write_text
+from linkwork.design.edits.unit_change import FileDegrees
 from linkwork.synthesis.improvement.settings import Improvement
 from linkwork.synthesis.lane_least_squares import Box
 

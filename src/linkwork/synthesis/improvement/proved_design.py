@@ -66,7 +66,7 @@ class ImprovedDesign:
     --------
     >>> import linkwork as lw
     >>> goal = {"of": "rocker", "at": [0, 90, 180], "values": [60, 80, 100]}
-    >>> best = lw.example("four-bar").improve(goal, vary=["A B", "O4 B"], starts=4)[0]
+    >>> best = lw.synthesis.improve(lw.example("four-bar"), goal, vary=["A B", "O4 B"], starts=4)[0]
     >>> sorted(best.numbers), best.sound
     (['A B', 'O4 B'], True)
     """

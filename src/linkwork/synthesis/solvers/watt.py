@@ -296,7 +296,7 @@ class WattDesign(SweptDesign):
     --------
     >>> import linkwork as lw
     >>> from linkwork.synthesis.solvers.watt import WattDesign
-    >>> issubclass(WattDesign, lw.JudgedDesign)
+    >>> issubclass(WattDesign, lw.synthesis.JudgedDesign)
     True
     """
 

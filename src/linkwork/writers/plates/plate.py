@@ -56,7 +56,7 @@ class PlateOptions:
     Examples
     --------
     >>> import linkwork as lw
-    >>> lw.PlateOptions(width=14, kerf=0.15).kerf
+    >>> lw.writers.PlateOptions(width=14, kerf=0.15).kerf
     0.15
     """
 
@@ -293,7 +293,7 @@ class PlateStack:
     --------
     >>> import linkwork as lw, tempfile
     >>> with tempfile.TemporaryDirectory() as folder:
-    ...     stack = lw.example("four-bar").to_plates(f"{folder}/plates.svg")
+    ...     stack = lw.example("four-bar").write(f"{folder}/plates.svg")
     >>> sorted(stack.layer.items())
     [('coupler', 2), ('crank', 1), ('ground', 0), ('rocker', 1)]
     >>> stack.proved

@@ -3,13 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
 from functools import cached_property
 from importlib import import_module
-from typing import get_args, get_type_hints
+from typing import TYPE_CHECKING
 
-from linkwork.contacts.cams import Cam
-from linkwork.contacts.curves import Curve, NoncircularGear
+from linkwork import wings
 from linkwork.core.foundation.containers import FrozenDict
 from linkwork.core.mechanism.bodies import Bodies
 from linkwork.core.mechanism.description import Key
@@ -24,9 +23,14 @@ from linkwork.core.mechanism.part.weld import Weld
 __all__ = ["PARTS", "JoinedBodies", "open_room"]
 
 
+if TYPE_CHECKING:
+    from linkwork.contacts.cams import Cam
+    from linkwork.contacts.curves import Curve, NoncircularGear
+
+
 @dataclass(frozen=True, kw_only=True)
 class _Tables:
-    """One field for each table of parts; most fields are read through type hints only."""
+    """One field for each table of parts."""
 
     slots: tuple[Slot, ...] = ()
     sliders: tuple[Slider, ...] = ()
@@ -43,12 +47,21 @@ class _Tables:
     loads: tuple[Load, ...] = ()
 
 
-#: The kind of part of every table.
-PARTS: Mapping[str, type[Part]] = {
-    # the fields are tuple[Kind, ...]
-    table: get_args(kind)[0]
-    for table, kind in get_type_hints(_Tables).items()
+_KINDS = {
+    "slots": Slot,
+    "sliders": Slider,
+    "cylinders": Cylinder,
+    "welds": Weld,
+    "gears": Gear,
+    "belts": Belt,
+    "racks": Rack,
+    "rolling": Rolling,
+    "springs": Spring,
+    "loads": Load,
+    **{table: wings.load(place) for wing in wings.WINGS for table, place in wing.parts.items()},
 }
+#: The kind of part of every table, in the order of a file.
+PARTS: Mapping[str, type[Part]] = {field.name: _KINDS[field.name] for field in fields(_Tables)}
 
 
 def open_room(kind: type, room: str) -> None:

@@ -6,11 +6,11 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from linkwork import wings
 from linkwork.core.foundation.arrays import Array
 from linkwork.core.foundation.rounding import EPSILON
 from linkwork.core.foundation.statuses import Certification, Status
 from linkwork.core.foundation.units import FULL_TURN
-from linkwork.core.motion import failure as why
 from linkwork.core.motion.following import Drive, leading_scale, track_to, turns_freely
 from linkwork.core.motion.limits import BranchEnd, ends_of
 from linkwork.core.motion.model import Model
@@ -102,7 +102,7 @@ def _on_branch(
         reasons = {limit.status for limit in limits}
         status = reasons.pop() if len(reasons) == 1 else limits[0].status
         way = (path, drive.lead, goal)
-        failure = why.beyond_reach(model, first.v, way, status, limits)
+        failure = wings.use("circuits.failure").beyond_reach(model, first.v, way, status, limits)
         return OutOfReach(status=status, failure=failure)
     rows = rows_on_track(solver, path, track, np.array([t]))
     asked = (asked * model.input_scale)[None, :]

@@ -16,12 +16,12 @@ from collections.abc import Mapping
 
 import numpy as np
 
-from linkwork.contacts.cams import CamOutline, Follower
 from linkwork.core.expression.derivatives import Jet
 from linkwork.core.foundation.arrays import Array, BoolArray, ComplexArray
 from linkwork.core.foundation.lanes import replaced
 from linkwork.core.foundation.rounding import REST
 from linkwork.core.foundation.units import FULL_TURN
+from linkwork.core.mechanism.bodies import CamOutline, Follower
 from linkwork.core.mechanism.skeleton import Dyad
 from linkwork.core.results.quantities.definition import (
     UNKNOWN,

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 from linkwork.core.foundation.loading import loader
 
 if TYPE_CHECKING:
-    from linkwork.core.motion.failure.failing import (
+    from linkwork.circuits.failure.failing import (
         another_root as another_root,
         beyond_reach as beyond_reach,
         no_position as no_position,

@@ -11,11 +11,11 @@ import numpy as np
 
 from linkwork.circuits.assembling import positions_at
 from linkwork.circuits.branches import TracedCurve
+from linkwork.circuits.failure.remedies import dyad_of
 from linkwork.core.equations.compiling import ParametrizedTable
 from linkwork.core.foundation.arrays import Array, BoolArray
 from linkwork.core.foundation.statuses import CircuitEnd, Completeness, Status
 from linkwork.core.foundation.units import within_half_a_turn
-from linkwork.core.motion.failure.remedies import dyad_of
 from linkwork.core.motion.following import turns_freely
 from linkwork.core.motion.limits import kind_of_crossing
 from linkwork.core.motion.model import Model

@@ -8,15 +8,14 @@ from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
 
-from linkwork import readers as exchange
-from linkwork.api.mechanism import Mechanism
 from linkwork.core import textfile
+from linkwork.core.api.mechanism import Mechanism
 from linkwork.core.foundation.errors import InputError, MechanismError, internal
 from linkwork.core.foundation.files import as_path
 from linkwork.core.foundation.values import as_told
 from linkwork.core.mechanism.linkage import Linkage
-from linkwork.readers.assembly import LARGEST, LeftOut
-from linkwork.readers.formats import carried
+from linkwork.readers.assembly import LARGEST, Exported, LeftOut
+from linkwork.readers.formats import FORMATS, carried, read_foreign, write_foreign
 
 __all__ = ["Imported", "imported"]
 
@@ -42,8 +41,8 @@ class Imported:
     >>> import linkwork as lw, pathlib, tempfile
     >>> with tempfile.TemporaryDirectory() as folder:
     ...     path = pathlib.Path(folder, "bar.json")
-    ...     _ = path.write_text(lw.example("hoeken").exported("pylinkage").text)
-    ...     found = lw.imported(path)
+    ...     _ = path.write_text(lw.readers.exported(lw.example("hoeken"), "pylinkage").text)
+    ...     found = lw.readers.imported(path)
     >>> print(found)
     pylinkage JSON: 5 points, 4 links, 1 input
     >>> found.mechanism.check().mobility_count
@@ -94,7 +93,7 @@ class Imported:
             f"{count} {what.removesuffix('s') if count == 1 else what}"
             for what, count in self.carried.items()
         ]
-        lines = [f"{exchange.FORMATS[self.format].TITLE}: {', '.join(counted)}"]
+        lines = [f"{FORMATS[self.format].TITLE}: {', '.join(counted)}"]
         lines += [f"renamed: {old} is now {new}" for old, new in self.renamed.items()]
         return "\n".join([*lines, *(f"left out: {each}" for each in self.left_out)])
 
@@ -131,7 +130,7 @@ def imported(source: str | Path, format: str | None = None) -> Imported:
     >>> with tempfile.TemporaryDirectory() as folder:
     ...     path = pathlib.Path(folder, "bar.txt")
     ...     _ = path.write_text(bar)
-    ...     found = lw.imported(path)
+    ...     found = lw.readers.imported(path)
     >>> found.format, found.left_out[0].what
     ('pyslvs', 'the input: an expression does not state it')
     """
@@ -140,7 +139,7 @@ def imported(source: str | Path, format: str | None = None) -> Imported:
     if format is not None and not isinstance(format, str):
         raise InputError(f"format must be a text, got {as_told(format)}")
     data, name = _bytes_of(given)
-    reading = exchange.read_foreign(data, name, format)
+    reading = read_foreign(data, name, format)
     return Imported(
         description=reading.linkage,
         format=reading.format,
@@ -151,6 +150,54 @@ def imported(source: str | Path, format: str | None = None) -> Imported:
 
 def _bytes_of(given: str) -> tuple[bytes, str]:
     """The content of a file, or a link itself."""
-    if exchange.FORMATS["pmks"].matches(given) and not os.path.exists(given):
+    if FORMATS["pmks"].matches(given) and not os.path.exists(given):
         return given.encode("utf-8", "replace"), "the link"
     return textfile.bytes_of(Path(given), given, LARGEST), given
+
+
+def exported(
+    mechanism: Mechanism,
+    format: str,
+    at: float | Mapping[str, float] | None = None,
+    *,
+    configuration: str | None = None,
+) -> Exported:
+    """The mechanism as a text of another program: pins, and slots or sliders.
+
+    Parameters
+    ----------
+    format : str
+        ``pmks`` (a link of PMKS+, coordinates in thousandths), ``pylinkage`` (JSON) or
+        ``pyslvs`` (an expression).
+    at : float or mapping, optional
+        The input of the position that is written; by default that of :meth:`Mechanism.solve`.
+    configuration : str, optional
+        The configuration of that position.
+
+    Returns
+    -------
+    Exported
+        The text, and what it leaves out; :func:`imported` reads it back.
+
+    Raises
+    ------
+    InputError
+        If the format is not written, or has no equivalent of a part.
+    NotConvergedError
+        If there is no position at this input value.
+
+    Examples
+    --------
+    >>> import linkwork as lw
+    >>> lw.readers.exported(lw.example("hoeken"), "pmks").text.partition("?")[0]
+    'https://app.pmksplus.com/'
+    """
+    linkage = mechanism.description
+    if not isinstance(linkage, Linkage):
+        raise InputError(
+            f'mechanism "{mechanism.name}" is given by equations: other programs need points and '
+            "links"
+        )
+    start = mechanism.solve(at, configuration=configuration, throw=True)
+    places = {name: complex(*start.points[name]) for name in linkage.points}
+    return write_foreign(linkage, places, format)

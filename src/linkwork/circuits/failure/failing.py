@@ -8,10 +8,7 @@ from itertools import pairwise
 
 import numpy as np
 
-from linkwork.core.foundation.arrays import Array
-from linkwork.core.foundation.statuses import NewtonTrouble, Status
-from linkwork.core.foundation.units import within_half_a_turn
-from linkwork.core.motion.failure.reach import (
+from linkwork.circuits.failure.reach import (
     MOST_UNKNOWNS,
     ElsewhereAt,
     ReachableRange,
@@ -22,7 +19,10 @@ from linkwork.core.motion.failure.reach import (
     reach_towards,
     roots_in_block,
 )
-from linkwork.core.motion.failure.remedies import dyad_of, remedies_of
+from linkwork.circuits.failure.remedies import dyad_of, remedies_of
+from linkwork.core.foundation.arrays import Array
+from linkwork.core.foundation.statuses import NewtonTrouble, Status
+from linkwork.core.foundation.units import within_half_a_turn
 from linkwork.core.motion.following import turns_freely
 from linkwork.core.motion.model import Model, leading_input
 from linkwork.core.numerics.block_solver import Block

@@ -7,9 +7,7 @@ from dataclasses import dataclass
 from fractions import Fraction
 from typing import Any
 
-from linkwork.app.edits.entries import Entry, entries, measured_by
 from linkwork.contacts.curves import Curve
-from linkwork.core.expression.degrees import ANGLE, LENGTH, PURE, Degree, Degrees, Literal
 from linkwork.core.expression.grammar import CONSTANTS, number_end, parse, parse_equation
 from linkwork.core.foundation.errors import InputError, key_text
 from linkwork.core.foundation.names import GROUND, canonical
@@ -24,6 +22,8 @@ from linkwork.core.results.quantities.registry import row_quantity
 from linkwork.core.textfile.keys import LINKAGE, LOOPS, form_of
 from linkwork.core.textfile.text_edits import TextEdits
 from linkwork.core.textfile.toml_text import data_of
+from linkwork.design.edits.degrees import ANGLE, LENGTH, PURE, Degree, Degrees, Literal
+from linkwork.design.edits.entries import Entry, entries, measured_by
 
 _BY_WORD = {
     "length": LENGTH, "angle": ANGLE, "number": PURE, "per length": Degree(Fraction(-1)),

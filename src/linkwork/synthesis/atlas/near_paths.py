@@ -10,7 +10,7 @@ from typing import Self
 
 import numpy as np
 
-from linkwork.api.mechanism import Mechanism
+from linkwork.core.api.mechanism import Mechanism
 from linkwork.core.foundation.arrays import ComplexArray
 from linkwork.core.foundation.errors import InputError, internal
 from linkwork.core.foundation.files import as_path
@@ -49,7 +49,7 @@ class NearPath:
     --------
     >>> import linkwork as lw
     >>> path = lw.example("hoeken").sweep(step=5).trace("P")
-    >>> near = lw.PathAtlas.shipped().nearest(path, 3)[0]
+    >>> near = lw.synthesis.PathAtlas.shipped().nearest(path, 3)[0]
     >>> near.distance < 0.1, bool(near.mechanism.sweep().certified.all())
     (True, True)
     """
@@ -96,7 +96,7 @@ class PathAtlas:
     Examples
     --------
     >>> import linkwork as lw
-    >>> atlas = lw.PathAtlas.shipped()
+    >>> atlas = lw.synthesis.PathAtlas.shipped()
     >>> square = [(0, 0), (50, 0), (100, 0), (100, 100), (0, 100), (0, 50)]
     >>> len(atlas.nearest(square, 5))
     5

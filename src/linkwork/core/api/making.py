@@ -6,8 +6,8 @@ import os
 from pathlib import Path
 from typing import Any
 
-from linkwork.api.mechanism import Mechanism
 from linkwork.core import textfile
+from linkwork.core.api.mechanism import Mechanism
 from linkwork.core.foundation.errors import InputError
 from linkwork.core.foundation.files import as_path
 from linkwork.core.foundation.values import as_told

@@ -12,9 +12,9 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from linkwork.app.pages.lasting_labels import lasting_labels
 from linkwork.core.drawing.guides import tracks
 from linkwork.core.drawing.inputs import input_arrows
-from linkwork.core.drawing.lasting_labels import lasting_labels
 from linkwork.core.drawing.links import tones
 from linkwork.core.drawing.mechanism_scene import reach_of, symbols, traced
 from linkwork.core.drawing.paths import trace_symbols

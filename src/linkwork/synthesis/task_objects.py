@@ -9,13 +9,13 @@ from typing import Any, Self
 
 import numpy as np
 
-from linkwork.api.designs_folder import FolderOptions, write_designs
-from linkwork.api.mechanism import Mechanism
+from linkwork.core.api.mechanism import Mechanism
 from linkwork.core.foundation.errors import InputError, MechanismError
 from linkwork.core.foundation.values import finite_number
 from linkwork.core.results.tables import Table
 from linkwork.synthesis.defects.by_circuits import defects_by_circuits
 from linkwork.synthesis.defects.verdicts import Defect
+from linkwork.synthesis.designs_folder import FolderOptions, write_designs
 from linkwork.synthesis.solvers.result import Synthesis as result_Synthesis, designs_table
 from linkwork.synthesis.solvers.solving import solve_task
 from linkwork.synthesis.tasks import task_file

@@ -6,6 +6,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from linkwork.app.pages.moving_scene import MovingScene, moving_scene
 from linkwork.app.pages.packing import (
     anchors_of,
     frames_of,
@@ -23,7 +24,6 @@ from linkwork.app.pages.page_data import (
     SolvingPage,
     StepRules,
 )
-from linkwork.core.drawing.moving_scene import MovingScene, moving_scene
 from linkwork.core.foundation.arrays import Array
 from linkwork.core.foundation.rounding import UNIT_ROUNDOFF
 from linkwork.core.foundation.units import FULL_TURN
@@ -36,8 +36,6 @@ from linkwork.families.march.step_trial import START_STEPS, STEPS
 from linkwork.families.march.sweep_kernel import Steps
 from linkwork.families.printed_solver import PrintedSolver, print_solver
 from linkwork.families.recorded_design import RecordedDesign
-
-__all__ = ["solving_page"]
 
 _FINEST = 1e-8  # relative step to the end of a branch
 _RULES = StepRules(
@@ -52,7 +50,7 @@ _RULES = StepRules(
 )
 
 
-def solving_page(
+def page_solver(
     design: RecordedDesign, motion: Motion, changed: Sequence[Motion | None]
 ) -> SolvingPage:
     """Print the solver of a motion's mechanism for its page.

@@ -10,8 +10,7 @@ from typing import Any
 
 import numpy as np
 
-from linkwork.core.equations.model import LoopEquations, Term, Variable
-from linkwork.core.equations.reading.joints import (
+from linkwork.circuits.reading_joints import (
     FRAME,
     Joints,
     NotRead,
@@ -21,6 +20,7 @@ from linkwork.core.equations.reading.joints import (
     phase_of,
     walks,
 )
+from linkwork.core.equations.model import LoopEquations, Term, Variable
 from linkwork.core.foundation.arrays import Array
 from linkwork.core.foundation.errors import MechanismError
 from linkwork.core.foundation.lanes import phase as direction_of

@@ -1,4 +1,4 @@
-"""The mechanism as a report for people."""
+"""The mechanism as a report for people: the results of its sections, gathered and written."""
 
 from __future__ import annotations
 
@@ -6,18 +6,20 @@ from collections.abc import Callable, Collection, Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, TypeVar
 
-from linkwork import writers as export
-from linkwork.api.exported import ExportedMechanism
 from linkwork.core import motion, textfile
-from linkwork.core.foundation.errors import InputError, UnknownNameError, internal
+from linkwork.core.api.mechanism import Mechanism
+from linkwork.core.foundation.errors import InputError, UnknownNameError
 from linkwork.core.foundation.files import as_path
+from linkwork.design.tolerance import tolerance
+from linkwork.forces.functions import stalls
 from linkwork.forces.results import ForceStatus
+from linkwork.writers.report.findings import Findings, Template, template_of
+from linkwork.writers.report.motion_sections import check_template, quantities_of
+from linkwork.writers.report.report import check_report_file, report_of
 
 if TYPE_CHECKING:
     from linkwork.core.results.motion import Motion
     from linkwork.core.results.position import Position
-
-__all__ = ["ReportedMechanism"]
 
 T = TypeVar("T")
 
@@ -37,91 +39,87 @@ _HIDING = {
 }
 
 
-@internal("findings")
-class ReportedMechanism(ExportedMechanism):
-    """A mechanism whose results can be written as a report."""
+def report(
+    mechanism: Mechanism,
+    path: str | Path,
+    at: float | Mapping[str, float] | None = None,
+    *,
+    template: str | Path = "engineer",
+    configuration: str | None = None,
+    title: str | None = None,
+    author: str | None = None,
+    institution: str | None = None,
+    date: str | None = None,
+    progress: Callable[[float], None] | None = None,
+) -> tuple[Path, ...]:
+    """Write a report: equations, drawings, tables, plots, what is proved, the file.
 
-    def to_report(
-        self,
-        path: str | Path,
-        at: float | Mapping[str, float] | None = None,
-        *,
-        template: str | Path = "engineer",
-        configuration: str | None = None,
-        title: str | None = None,
-        author: str | None = None,
-        institution: str | None = None,
-        date: str | None = None,
-        progress: Callable[[float], None] | None = None,
-    ) -> tuple[Path, ...]:
-        """Write a report: equations, drawings, tables, plots, what is proved, the file.
+    Parameters
+    ----------
+    path : str or Path
+        The file; its suffix selects the format: ``.html``, ``.pdf``, ``.docx``, or ``.md`` with
+        its pictures in the folder ``<name>-pictures``.
+    at : number or Mapping[str, number], optional
+        The input of the drawing, the vectors, the configurations and the iterations; by default
+        round values near those of the guess.
+    template : str or Path
+        ``engineer``, ``student``, or a template file, which names the sections.
+    configuration : str, optional
+        The configuration or branch of the motion, as in :meth:`Mechanism.solve`.
+    title, author, institution, date : str, optional
+        The head of the report, instead of that in the template.
+    progress : callable, optional
+        Called with the finished fraction, 0 to 1.
 
-        Parameters
-        ----------
-        path : str or Path
-            The file; its suffix selects the format: ``.html``, ``.pdf``, ``.docx``, or ``.md`` with
-            its pictures in the folder ``<name>-pictures``.
-        at : number or Mapping[str, number], optional
-            The input of the drawing, the vectors, the configurations and the iterations; by default
-            round values near those of the guess.
-        template : str or Path
-            ``engineer``, ``student``, or a template file, which names the sections.
-        configuration : str, optional
-            The configuration or branch of the motion, as in :meth:`solve`.
-        title, author, institution, date : str, optional
-            The head of the report, instead of that in the template.
-        progress : callable, optional
-            Called with the finished fraction, 0 to 1.
+    Returns
+    -------
+    tuple of Path
+        The files that were written: the report, then its pictures.
 
-        Returns
-        -------
-        tuple of Path
-            The files that were written: the report, then its pictures.
+    Raises
+    ------
+    InputError
+        If the suffix is unknown, the template has errors or does not fit the mechanism, or the
+        file cannot be written.
+    MissingPackageError
+        If the package that writes the format is not installed.
 
-        Raises
-        ------
-        InputError
-            If the suffix is unknown, the template has errors or does not fit the mechanism, or the
-            file cannot be written.
-        MissingPackageError
-            If the package that writes the format is not installed.
+    Examples
+    --------
+    >>> import linkwork as lw, tempfile
+    >>> with tempfile.TemporaryDirectory() as folder:
+    ...     (file,) = lw.example("four-bar").write(f"{folder}/bar.html", title="Bar")
+    ...     text = file.read_text("utf-8")
+    >>> file.name, "What is proved" in text
+    ('bar.html', True)
+    """
+    target = as_path(path)
+    check_report_file(target)
+    chosen = template_of(template).with_head(
+        {"title": title, "author": author, "institution": institution, "date": date}
+    )
+    check_template(chosen, mechanism.model)
+    tell = progress or (lambda fraction: None)
+    found = findings(mechanism, chosen, at, configuration, lambda part: tell(_FOUND * part))
+    written = report_of(found, chosen, target, lambda part: tell(_FOUND + (1.0 - _FOUND) * part))
+    return written.save(target)
 
-        Examples
-        --------
-        >>> import linkwork as lw, tempfile
-        >>> with tempfile.TemporaryDirectory() as folder:
-        ...     (file,) = lw.example("four-bar").to_report(f"{folder}/bar.html", title="Bar")
-        ...     text = file.read_text("utf-8")
-        >>> file.name, "What is proved" in text
-        ('bar.html', True)
-        """
-        target = as_path(path)
-        export.check_report_file(target)
-        chosen = export.template_of(template).with_head(
-            {"title": title, "author": author, "institution": institution, "date": date}
-        )
-        export.check_template(chosen, self.model)
-        tell = progress or (lambda fraction: None)
-        found = self.findings(chosen, at, configuration, lambda part: tell(_FOUND * part))
-        written = export.report_of(
-            found, chosen, target, lambda part: tell(_FOUND + (1.0 - _FOUND) * part)
-        )
-        return written.save(target)
 
-    def findings(
-        self,
-        template: export.Template,
-        at: float | Mapping[str, float] | None,
-        configuration: str | None,
-        progress: Callable[[float], None],
-    ) -> export.Findings:
-        """The results that the sections of a template show."""
-        gathering = _Gathering(self, template, at, configuration, progress)
-        gathering.gather()
-        source = textfile.write_text(self.description) if self._read is None else self._read.text
-        return export.Findings(
-            model=self.model, source=source, absent=gathering.absent, **gathering.found
-        )
+def findings(
+    mechanism: Mechanism,
+    template: Template,
+    at: float | Mapping[str, float] | None,
+    configuration: str | None,
+    progress: Callable[[float], None],
+) -> Findings:
+    """The results that the sections of a template show."""
+    gathering = _Gathering(mechanism, template, at, configuration, progress)
+    gathering.gather()
+    read = mechanism.read
+    source = textfile.write_text(mechanism.description) if read is None else read.text
+    return Findings(
+        model=mechanism.model, source=source, absent=gathering.absent, **gathering.found
+    )
 
 
 class _Gathering:
@@ -129,8 +127,8 @@ class _Gathering:
 
     def __init__(
         self,
-        mechanism: ReportedMechanism,
-        template: export.Template,
+        mechanism: Mechanism,
+        template: Template,
         at: float | Mapping[str, float] | None,
         configuration: str | None,
         progress: Callable[[float], None],
@@ -201,7 +199,7 @@ class _Gathering:
         elif not swept.found.any():
             self._without(("plots", "paths", "forces", "tolerances"), _NOT_FOUND)
         else:
-            if not export.quantities_of(swept, self.template):
+            if not quantities_of(swept, self.template):
                 self._without(("plots",), "the mechanism has no unknown, output or traced point")
             if not swept.skeleton.traced:
                 self._without(("paths",), "the file traces no point")
@@ -230,7 +228,7 @@ class _Gathering:
         self._try("forces", lambda: mechanism.forces(motion=swept))
         acting = self.found.get("forces")
         if acting is not None and ForceStatus.SELF_LOCKING in acting.statuses:
-            self.found["stalls"] = mechanism.stalls(motion=swept, configuration=self.configuration)
+            self.found["stalls"] = stalls(mechanism, motion=swept, configuration=self.configuration)
 
     def _vary(self, position: Position) -> None:
         """The tolerances at the drawn position."""
@@ -242,7 +240,7 @@ class _Gathering:
         self._try(
             "tolerances",
             lambda: tuple(
-                self.mechanism.tolerance(of, at, configuration=self.configuration) for of in names
+                tolerance(self.mechanism, of, at, configuration=self.configuration) for of in names
             ),
         )
 

@@ -9,9 +9,7 @@ from collections.abc import Callable, Collection, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 
-from linkwork.api.mechanism import Mechanism
-from linkwork.api.task_copy import REFUSED, task_copy
-from linkwork.app.pages.designs_page import designs_page
+from linkwork.core.api.mechanism import Mechanism
 from linkwork.core.drawing.annotations import PositionMark, SceneOptions
 from linkwork.core.drawing.picture_file import render
 from linkwork.core.drawing.scene import Scene
@@ -20,7 +18,9 @@ from linkwork.core.foundation.files import OwnFiles, as_path, save_bytes, save_t
 from linkwork.core.results.tables import csv_text
 from linkwork.core.textfile.writer import write_text
 from linkwork.synthesis.defects.verdicts import JudgedDesign
+from linkwork.synthesis.designs_page import designs_page
 from linkwork.synthesis.solvers.result import Synthesis, designs_table, front_of
+from linkwork.synthesis.task_copy import REFUSED, task_copy
 from linkwork.synthesis.tasks.task import Task
 from linkwork.writers.charts.circuits import front_chart
 

@@ -4,10 +4,9 @@ from __future__ import annotations
 
 from importlib import resources
 
-from linkwork.app.live.mechanism_file import MechanismFile, new_file
 from linkwork.core.foundation.errors import InputError, choices
 
-__all__ = ["task_template", "template_names", "template_text"]
+__all__ = ["template_names", "template_text"]
 
 
 def template_names() -> tuple[str, ...]:
@@ -28,8 +27,3 @@ def template_text(name: str) -> str:
     if name not in known:
         raise InputError(f'there is no task "{name}" to begin with {choices("tasks", known, name)}')
     return (resources.files(__name__) / f"{name}.toml").read_text(encoding="utf-8")
-
-
-def task_template(name: str) -> MechanismFile:
-    """A task to begin with, under a name that no file has; raises like `template_text`."""
-    return new_file(name, template_text(name))

@@ -1,0 +1,1 @@
+"""Mechanisms as Python objects: make, read, solve and show them."""

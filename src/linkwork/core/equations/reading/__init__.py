@@ -1,1 +1,0 @@
-"""Derivation of links and joints from loop equations."""
