@@ -7,8 +7,8 @@ from importlib import import_module
 from pathlib import Path
 
 import linkwork as lw
-from linkwork.writers import Findings, template_of
 from linkwork.writers.report.document import Figure, Table
+from linkwork.writers.report.findings import Findings, template_of
 from linkwork.writers.report.gathering import findings
 from linkwork.writers.report.report import document_of, report_of
 

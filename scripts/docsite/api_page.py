@@ -6,7 +6,9 @@ import inspect
 from collections.abc import Iterator
 from enum import Enum
 from functools import cached_property
-from types import FunctionType
+from importlib import import_module
+from operator import attrgetter
+from types import FunctionType, ModuleType
 
 import linkwork as lw
 from linkwork.core.foundation.errors import internal_members
@@ -29,30 +31,55 @@ ALIASES = {
     "Reduction": '`"max(rocker)"`, or a function of an array of designs and rows',
 }
 _PROPERTIES = (property, cached_property)
-#: The parts of the page: their titles, and the packages of the names in them.
+#: The parts of the page with names of the root: their titles, and the packages of the names.
 _PARTS = (
-    ("Read and make mechanisms", ("linkwork.api", "linkwork.core.textfile", "linkwork.readers")),
-    ("Parts of a mechanism", ("linkwork.core.mechanism", "linkwork.core.foundation.units")),
-    ("Families", ("linkwork.families",)),
+    ("Read and make mechanisms", ("linkwork.core.api", "linkwork.core.textfile")),
     (
-        "Synthesis and improvement",
-        (
-            "linkwork.design",
-            "linkwork.synthesis.task_objects",
-            "linkwork.synthesis.atlas.near_paths",
-        ),
+        "Parts of a mechanism",
+        ("linkwork.core.mechanism", "linkwork.contacts", "linkwork.core.foundation.units"),
     ),
-    ("Pictures and films", ("linkwork.core.drawing", "linkwork.app")),
-    ("Plates", ("linkwork.writers.plates",)),
-    ("Results", ("linkwork.core.results", "linkwork.core.equations", "linkwork.core.numerics")),
+    (
+        "Results and options",
+        ("linkwork.core.results", "linkwork.core.numerics", "linkwork.core.drawing"),
+    ),
     ("Statuses", ("linkwork.core.foundation",)),
     ("Errors", ("linkwork.core.foundation.errors",)),
+    ("Synthesis", ("linkwork.synthesis",)),
 )
+#: The parts with the names of packages, as ``lw.design.flywheel``.
+_PACKAGES = {
+    "Results: linkwork.core.results": "core.results",
+    "Equations: linkwork.core.equations": "core.equations",
+    "Pictures: linkwork.core.drawing": "core.drawing",
+    "Assemblies: linkwork.circuits": "circuits",
+    "Forces: linkwork.forces": "forces",
+    "Families: linkwork.families": "families",
+    "Machine design: linkwork.design": "design",
+    "Synthesis and improvement: linkwork.synthesis": "synthesis",
+    "Files for other programs: linkwork.writers": "writers",
+    "Files of other programs: linkwork.readers": "readers",
+    "Pages: linkwork.app": "app",
+}
+#: Of packages with names that the tutorials explain: those of the reference.
+_LISTED = {
+    "core.equations": {"EquationSheet"},
+    "core.drawing": {"Scene"},
+    "families": {"Family", "FamilyLimits", "FamilyMotion"},
+    "writers": {"PlateOptions", "PlateStack", "plates", "program", "report", "robot", "workbook"},
+    "app": {"FilmOptions"},
+}
 
 
 def public_names() -> tuple[str, ...]:
-    """All public names."""
-    return tuple(lw.__all__)  # type: ignore[attr-defined]  # by the loader
+    """All public names below ``linkwork``, wings apart: ``solve``, ``design.flywheel``."""
+    root = [name for name in lw.__all__ if not isinstance(getattr(lw, name), ModuleType)]  # type: ignore[attr-defined]  # by the loader
+    further = [
+        f"{package}.{name}"
+        for package in _PACKAGES.values()
+        for name in import_module(f"linkwork.{package}").__all__
+        if name not in root and name in _LISTED.get(package, {name})
+    ]
+    return (*root, *further)
 
 
 def public_members(kind: type) -> Iterator[tuple[str, object]]:
@@ -89,9 +116,11 @@ def api_page() -> str:
     parts += ["| in signatures | meaning |\n|---|---|"]
     parts += [f"| `{name}` | {meaning} |" for name, meaning in ALIASES.items()]
     parts.append("")
-    by_part: dict[str, list[str]] = {title: [] for title, _homes in _PARTS}
+    titles = {package: title for title, package in _PACKAGES.items()}
+    by_part: dict[str, list[str]] = {title: [] for title in [*dict(_PARTS), *_PACKAGES]}
     for name in public_names():
-        by_part[_part_of(name)].append(name)
+        package = name.rpartition(".")[0]
+        by_part[titles[package] if package else _part_of(name)].append(name)
     for title, names in by_part.items():
         parts.append(f"## {title}\n")
         parts += [_entry(name) for name in names]
@@ -113,7 +142,7 @@ def _part_of(name: str) -> str:
 
 
 def _entry(name: str) -> str:
-    public = getattr(lw, name)
+    public = attrgetter(name)(lw)
     if not inspect.isclass(public):
         lines = [f".. autofunction:: linkwork.{name}"]
     else:

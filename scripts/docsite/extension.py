@@ -30,7 +30,7 @@ from sphinx.util.inspect import stringify_signature
 import linkwork as lw
 from linkwork.core.foundation.errors import internal_members
 from scripts.docsite import mathml, text_files
-from scripts.docsite.api_page import ALIASES, is_built_by_users
+from scripts.docsite.api_page import ALIASES, is_built_by_users, public_names
 from scripts.docsite.commands_run import commands_of, run_command
 from scripts.docsite.equation_lines import equation_lines
 from scripts.docsite.live_pages import Opened, opened
@@ -206,11 +206,12 @@ def _resolve_python(
         return contnode if known else None
     if node["reftype"] == "func" and root == "linkwork":
         return contnode  # a hint for readers of the source
-    if short not in lw.__all__:  # type: ignore[attr-defined]  # by the loader
+    public = next((name for name in public_names() if name.rpartition(".")[2] == short), None)
+    if public is None:
         return None
     domain = env.get_domain("py")
     return domain.resolve_xref(
-        env, env.docname, app.builder, node["reftype"], f"linkwork.{short}", node, contnode
+        env, env.docname, app.builder, node["reftype"], f"linkwork.{public}", node, contnode
     )
 
 

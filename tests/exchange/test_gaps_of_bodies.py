@@ -10,8 +10,8 @@ import pytest
 import linkwork as lw
 from linkwork.core.foundation.errors import MechanismFileError
 from linkwork.core.mechanism.linkage import Linkage
-from linkwork.readers import read_foreign
 from linkwork.readers.assembly import LeftOut
+from linkwork.readers.formats import read_foreign
 
 _CRANK = """
 <body name="crank"><joint name="O" axis="0 0 1"/>

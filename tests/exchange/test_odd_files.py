@@ -9,7 +9,7 @@ import sys
 import pytest
 
 import linkwork as lw
-from linkwork.readers import read_foreign
+from linkwork.readers.formats import read_foreign
 from tests.exchange.samples import GEOGEBRA, SAMPLES, dxf_text
 
 _ARM = """\

@@ -20,7 +20,6 @@ import linkwork as lw
 from linkwork import example_text
 from linkwork.core.commands.main import linkwork
 from linkwork.core.results.listing.motion_listing import Column
-from linkwork.writers import Findings, template_of
 from linkwork.writers.report.document import (
     Block,
     Document,
@@ -35,7 +34,7 @@ from linkwork.writers.report.document import (
     split_columns,
 )
 from linkwork.writers.report.docx import docx_bytes
-from linkwork.writers.report.findings import SECTIONS, Template
+from linkwork.writers.report.findings import SECTIONS, Findings, Template, template_of
 from linkwork.writers.report.gathering import findings
 from linkwork.writers.report.html import html_bytes
 from linkwork.writers.report.pdf import pdf_bytes, typst_text

@@ -13,9 +13,9 @@ import pytest
 import linkwork as lw
 from linkwork.core.foundation.errors import InputError
 from linkwork.core.results.quantity import Kind
-from linkwork.writers import workbook_of
 from linkwork.writers.formulas.rate_formulas import dimension_kinds
 from linkwork.writers.formulas.traced import traced
+from linkwork.writers.workbook.workbook import workbook_of
 
 
 def opened(tmp_path: Path, mechanism: Any, **asked: Any) -> Any:

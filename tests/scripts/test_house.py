@@ -10,7 +10,7 @@ TEXT = '''"""Head."""
 
 from linkwork.core.motion import solving  # used below
 from linkwork.forces import (
-    forces,
+    results,
 )
 
 __all__ = ["name"]
@@ -22,7 +22,7 @@ def name() -> None:
     """
     # a comment
     solving.solve(
-        forces,
+        results,
     )
 '''
 

@@ -36,7 +36,7 @@ PRESS = lw.example("crank-press")
         (lambda: lw.Input(link=3), "link of lw.Input must be a text, got 3"),  # type: ignore[arg-type]
         (
             lambda: lw.forces.Force(at="A", x="1", y=2),  # type: ignore[arg-type]
-            "x of lw.forces.Force must be a number, got '1'",
+            "x of lw.Force must be a number, got '1'",
         ),
         (
             lambda: lw.NewtonOptions(max_steps=2.5),  # type: ignore[arg-type]

@@ -46,14 +46,15 @@ for name in ("four-bar", "jansen-leg", "rapier-drive"):
         mechanism.check().start_message,
     ]
 deviations = {"A B": 0.1}
-said["tolerance"] = repr(lw.example("four-bar").tolerance("rocker", 60, deviations=deviations))
+four_bar = lw.example("four-bar")
+said["tolerance"] = repr(lw.design.tolerance(four_bar, "rocker", 60, deviations=deviations))
 desk = BrowserDesk(lw.loads, example_text, told.append, list, solve_task)
 desk.begin("#example=jansen-leg")
 said["events"] = told
 said["unclassified"] = lw.example("four-bar").check().unclassified
 failed = []
 for work in blocked and (lambda: lw.example("four-bar").family({"O2 A": [1.0, 2.0]}).sweep(),
-                         lambda: lw.example("four-bar").inversions(),
+                         lambda: lw.circuits.inversions(lw.example("four-bar")),
                          lambda: lw.example("four-bar").draw("x.png")):
     try:
         work()

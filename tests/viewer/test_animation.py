@@ -13,7 +13,8 @@ import pytest
 from PIL import Image
 
 import linkwork as lw
-from linkwork.app import FilmOptions, animation, check_animation
+from linkwork.app import FilmOptions
+from linkwork.app.pages.animation import animation, check_animation
 from linkwork.app.pages.moving_scene import MovingScene
 from linkwork.core.drawing import Arc, Role, Scene
 

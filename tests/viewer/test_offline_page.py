@@ -14,10 +14,11 @@ import numpy as np
 import pytest
 
 import linkwork as lw
-from linkwork.app import drawn_page, motion_page, offline_page
+from linkwork.app import motion_page, offline_page
 from linkwork.app.pages.moving_scene import moving_scene
 from linkwork.app.pages.offline_page import page_json
 from linkwork.app.pages.packing import play_order, unpressed
+from linkwork.app.pages.page_building import drawn_page
 from linkwork.core.drawing import render
 from linkwork.core.drawing.annotations import Force
 from linkwork.core.drawing.scene import Disc, Role

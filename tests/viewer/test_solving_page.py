@@ -20,8 +20,8 @@ from linkwork.core.commands.main import linkwork
 from linkwork.core.foundation.errors import InputError
 from linkwork.core.mechanism.varied_numbers import varied_numbers, with_numbers
 from linkwork.core.record.printing import PYTHON, C
-from linkwork.families import record_design
 from linkwork.families.printed_solver import print_solver
+from linkwork.families.recorded_design import record_design
 from tests.viewer.printed_march import PlainMarch, imported
 
 CASES = {

@@ -1,4 +1,4 @@
-"""Chains."""
+"""The kinematic chain of a linkage: its name, its contours, its inversions."""
 
 from __future__ import annotations
 

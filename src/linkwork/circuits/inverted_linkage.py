@@ -1,4 +1,4 @@
-"""Inversion."""
+"""A linkage with another link as ground."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Results."""
+"""Results: configurations, circuits and their branches."""
 
 from __future__ import annotations
 
@@ -248,7 +248,7 @@ class Circuits(NamedSequence[Circuit]):
         UnknownNameError
             For a name that does not exist.
         """
-        return wings.use("writers").plot_circuits(
+        return wings.use("writers.charts.matplotlib_plot").plot_circuits(
             self, *names, kind=kind, ax=ax, theme=theme, title=title
         )
 
@@ -257,7 +257,7 @@ class Circuits(NamedSequence[Circuit]):
 
     def _repr_html_(self) -> str:
         """A picture and a short table, for notebooks."""
-        return wings.use("app").circuits_html(self)
+        return wings.use("app.pages.notebook").circuits_html(self)
 
     def to_dict(self) -> dict[str, Any]:
         """Plain data, as in the command line's JSON."""
@@ -431,7 +431,7 @@ class Configurations(NamedSequence[Position]):
 
     def _repr_html_(self) -> str:
         """A picture and a short table, for notebooks."""
-        return wings.use("app").configurations_html(self)
+        return wings.use("app.pages.notebook").configurations_html(self)
 
     def to_dict(self) -> dict[str, Any]:
         """The list as JSON-ready data."""

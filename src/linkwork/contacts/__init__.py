@@ -1,4 +1,4 @@
-"""contacts."""
+"""Parts with laws: cams, curves, non-circular gears."""
 
 from __future__ import annotations
 

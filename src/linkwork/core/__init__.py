@@ -1,1 +1,1 @@
-"""core."""
+"""From a description to equations, proved positions and sweeps."""

@@ -1,4 +1,4 @@
-"""Machine design."""
+"""Flywheels, motors, harmonics, inflection circles."""
 
 from __future__ import annotations
 

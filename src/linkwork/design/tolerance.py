@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from linkwork import families as batch
+from linkwork import wings
 from linkwork.core.api.mechanism import Mechanism
 from linkwork.core.foundation.arrays import Array
 from linkwork.core.foundation.errors import InputError, UnknownNameError, choices
@@ -239,11 +239,11 @@ def _of_designs(
     """The quantity of every design, (D,); NaN where it does not exist."""
     if isinstance(solved, Motion):
         if of.strip() in LIMITS:
-            return batch.family_of(model, plan).reduced(())[of.strip()]
-        return batch.family_of(model, plan).reduced([of])[of]
+            return wings.use("families.family").family_of(model, plan).reduced(())[of.strip()]
+        return wings.use("families.family").family_of(model, plan).reduced([of])[of]
     # every design is followed from the position that all deviations start from
     one = _at_one_row(model, solved)
-    found = batch.family_of(one, plan).sweep(certify=False)
+    found = wings.use("families.family").family_of(one, plan).sweep(certify=False)
     return found[of][:, 0]
 
 

@@ -1,4 +1,4 @@
-"""Sensitivities."""
+"""Results: sensitivities and tolerances."""
 
 from __future__ import annotations
 
@@ -152,7 +152,7 @@ class Sensitivity:
 
     def _repr_html_(self) -> str:
         """A short table, for notebooks."""
-        return wings.use("app").sensitivity_html(self)
+        return wings.use("app.pages.notebook").sensitivity_html(self)
 
 
 def _size(rows: Array) -> float:
@@ -350,7 +350,7 @@ class Tolerance:
 
     def _repr_html_(self) -> str:
         """A short table, for notebooks."""
-        return wings.use("app").tolerance_html(self)
+        return wings.use("app.pages.notebook").tolerance_html(self)
 
 
 def tolerance_summary(found: Tolerance) -> Summary:

@@ -9,16 +9,8 @@ from linkwork.core.foundation.loading import loader
 if TYPE_CHECKING:
     from linkwork.families.building import Designs as Designs, designs_of as designs_of
     from linkwork.families.design_sweep import FamilyLimits as FamilyLimits
-    from linkwork.families.family import (
-        Family as Family,
-        compile_kernels as compile_kernels,
-        family_of as family_of,
-    )
+    from linkwork.families.family import Family as Family, compile_kernels as compile_kernels
     from linkwork.families.family_motion import FamilyMotion as FamilyMotion
-    from linkwork.families.recorded_design import (
-        RecordedDesign as RecordedDesign,
-        record_design as record_design,
-    )
     from linkwork.families.sampling import (
         Plan as Plan,
         from_table as from_table,

@@ -8,7 +8,6 @@ from importlib import import_module
 
 import numpy as np
 
-from linkwork import families as batch
 from linkwork.core.foundation.arrays import Array, BoolArray, IndexArray
 from linkwork.core.foundation.errors import InputError, internal
 from linkwork.core.foundation.loading import cores
@@ -78,7 +77,7 @@ def _use_all() -> None:
         inputs=(Input(link="crank", start=0, stop=360, step=30),),
     )
     for length in (40.0, 95.0):  # turns around, and does not
-        family = batch.family_of(model_of(four_bar), {"O A": np.full(_DESIGNS, length)})
+        family = family_of(model_of(four_bar), {"O A": np.full(_DESIGNS, length)})
         family.sweep()["arm.d1"]
 
 

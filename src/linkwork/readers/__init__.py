@@ -8,12 +8,6 @@ from linkwork.core.foundation.loading import loader
 
 if TYPE_CHECKING:
     from linkwork.readers.assembly import Exported as Exported, LeftOut as LeftOut
-    from linkwork.readers.formats import (
-        FORMATS as FORMATS,
-        WRITERS as WRITERS,
-        read_foreign as read_foreign,
-        write_foreign as write_foreign,
-    )
     from linkwork.readers.imported import (
         Imported as Imported,
         exported as exported,

@@ -1,4 +1,4 @@
-"""``linkwork import``"""
+"""The command ``import``."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""synthesis."""
+"""Mechanisms for tasks, and better numbers for a mechanism."""
 
 from __future__ import annotations
 

@@ -56,6 +56,13 @@ def workbook(
         be written.
     MissingPackageError
         If XlsxWriter is not installed.
+
+    Examples
+    --------
+    >>> import linkwork as lw, tempfile
+    >>> with tempfile.TemporaryDirectory() as folder:
+    ...     lw.example("four-bar").write(f"{folder}/bar.xlsx")
+    ()
     """
     if as_path(path).suffix.lower() != ".xlsx":
         raise InputError(f'cannot write "{path}": a workbook needs the suffix .xlsx')

@@ -16,9 +16,10 @@ from linkwork.app import motion_page
 from linkwork.core.commands.main import linkwork
 from linkwork.core.foundation.errors import InputError, MechanismError, UnknownNameError
 from linkwork.core.results.quantities.registry import EVIDENCE, MOTION_QUANTITIES, ROW_QUANTITIES
+from linkwork.core.results.tables import csv_lines
 from linkwork.families.study import read_plan_text
-from linkwork.writers import csv_lines, workbook_of
 from linkwork.writers.charts.columns import column_of
+from linkwork.writers.workbook.workbook import workbook_of
 from tests.viewer.unpacking import unpacked
 
 ROWS = ["B.transmission", "rocker.mechanical_advantage", "B.curvature", "B.centre.x", "B.centre.y"]

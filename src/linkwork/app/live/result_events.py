@@ -12,7 +12,6 @@ from tempfile import TemporaryDirectory
 
 import numpy as np
 
-from linkwork import app as viewer
 from linkwork.app.live.events import (
     BranchFound,
     CannotClose,
@@ -42,7 +41,9 @@ from linkwork.app.live.force_entries import entries_shown, masses_shown
 from linkwork.app.live.history import History
 from linkwork.app.live.part_entries import parts_shown
 from linkwork.app.live.subject import Subject, lacks_of
+from linkwork.app.pages.animation import FilmOptions, animation, check_animation
 from linkwork.app.pages.moving_scene import moving_scene
+from linkwork.app.pages.offline_page import offline_page
 from linkwork.app.pages.page_building import motion_page
 from linkwork.app.pages.page_data import PageData
 from linkwork.app.pages.still_page import still_page
@@ -150,14 +151,14 @@ def exported_file(
         elif suffix == "html":
             equations = mechanism.equations().mathml()
             loops = partial(moving_loops, mechanism.model)
-            page = viewer.motion_page({"motion": motion}, equations=equations, loops=loops)
-            content = viewer.offline_page(page).encode()
+            page = motion_page({"motion": motion}, equations=equations, loops=loops)
+            content = offline_page(page).encode()
         elif suffix == "xlsx":
             content, notices = _workbook(mechanism, motion)
         else:
-            options = viewer.FilmOptions(theme="dark" if dark else "light")
-            viewer.check_animation(f"film.{suffix}", options)
-            content = viewer.animation({"": motion}, suffix, options=options, progress=progress)
+            options = FilmOptions(theme="dark" if dark else "light")
+            check_animation(f"film.{suffix}", options)
+            content = animation({"": motion}, suffix, options=options, progress=progress)
     return ExportedFile(
         suffix=suffix, media_type=_MEDIA_TYPES[suffix], content=content, notices=notices
     )

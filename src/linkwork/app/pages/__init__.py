@@ -1,1 +1,1 @@
-"""pages."""
+"""Pages that show motions, films and notebook widgets."""

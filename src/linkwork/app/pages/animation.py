@@ -21,7 +21,6 @@ from linkwork.app.pages.offline_page import offline_page
 from linkwork.app.pages.packing import falling, in_time, play_order
 from linkwork.app.pages.page_building import Loops, motion_page
 from linkwork.app.pages.page_data import PageData, SolvingPage
-from linkwork.app.pages.solver_page import page_solver
 from linkwork.core.api.mechanism import Mechanism
 from linkwork.core.drawing.annotations import Force
 from linkwork.core.drawing.pose import inputs_caption
@@ -34,7 +33,6 @@ from linkwork.core.foundation.names import as_names
 from linkwork.core.foundation.values import given_or
 from linkwork.core.motion.iterating import moving_loops
 from linkwork.core.results.motion import Motion
-from linkwork.families import record_design
 
 if TYPE_CHECKING:
     from PIL.Image import Image
@@ -417,6 +415,10 @@ def animate(
 
 def solving_page(mechanism: Mechanism, sliders: Sequence[str], motion: Motion) -> SolvingPage:
     """The solver for a page that shows a sweep with sliders; see :meth:`animate`."""
+    # kernels are loaded when a page with sliders is written
+    from linkwork.app.pages.solver_page import page_solver
+    from linkwork.families.recorded_design import record_design
+
     if not motion.found.any():
         raise InputError("there is no motion to change with sliders: no position was found")
     design = record_design(mechanism.model, as_names("sliders", sliders))

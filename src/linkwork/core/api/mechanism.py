@@ -91,7 +91,7 @@ class Mechanism:
 
     def _repr_html_(self) -> str:
         """A picture of the start and a short table, for notebooks."""
-        return wings.use("app").mechanism_html(
+        return wings.use("app.pages.notebook").mechanism_html(
             repr(self).strip("<>"), self.solve(), self.equations().mathml()
         )
 
@@ -185,7 +185,7 @@ class Mechanism:
         if configuration is not None:
             if from_guess or with_steps:
                 raise InputError("configuration= has no steps from a guess: leave one out")
-            return wings.use("circuits").solve_configuration(
+            return wings.use("circuits.configuration_list").solve_configuration(
                 self.model, at, configuration, throw=throw
             )
         return motion.solve(
@@ -289,7 +289,9 @@ class Mechanism:
             model = motion.model_of(self.description.with_range(start, stop, step))
             model = model.from_start_of(self.model)
         if configuration is not None:
-            model = wings.use("circuits").start_in_configuration(model, configuration)
+            model = wings.use("circuits.configuration_list").start_in_configuration(
+                model, configuration
+            )
         return motion.sweep(
             model,
             through=through,
@@ -378,7 +380,7 @@ class Mechanism:
         open 64.943
         crossed -111.77
         """
-        return wings.use("circuits").configurations(self.model, at)
+        return wings.use("circuits.configuration_list").configurations(self.model, at)
 
     def circuits(
         self, *, certify: bool = True, progress: Callable[[float], None] | None = None
@@ -410,7 +412,9 @@ class Mechanism:
         circuit 1 CLOSED True
         circuit 2 CLOSED True
         """
-        return wings.use("circuits").circuits(self.model, certify=certify, progress=progress)
+        return wings.use("circuits.circuit_list").circuits(
+            self.model, certify=certify, progress=progress
+        )
 
     def forces(
         self,
@@ -451,7 +455,7 @@ class Mechanism:
         >>> round(press.forces(at=60)["crank.effort"])
         3644
         """
-        forces = wings.use("forces")
+        forces = wings.use("forces.reactions")
         if at is not None or not self.model.equations.inputs:
             position = self.solve(at, configuration=configuration)
             return forces.forces_of_position(self.model, position, self.place)
@@ -517,7 +521,7 @@ class Mechanism:
         >>> round(float(motion["A.x"][-1]), 12)
         -0.275087462576
         """
-        return wings.use("forces").simulate(
+        return wings.use("forces.dynamics").simulate(
             self.model,
             until=until,
             step=step,
@@ -555,7 +559,7 @@ class Mechanism:
         >>> family.reduced(["stroke(rocker)"])["stroke(rocker)"].round(3)
         array([69.572, 73.782, 78.117])
         """
-        return wings.use("families").family_of(self.model, dimensions)
+        return wings.use("families.family").family_of(self.model, dimensions)
 
     def with_dimensions(
         self, changes: Mapping[str, Number] | None = None, /, **more: Number
@@ -636,7 +640,7 @@ class Mechanism:
         <Mechanism "Four-bar linkage, open": 1 equation for crank, coupler; driven by rocker>
         """
         return type(self)(
-            wings.use("circuits").driven_otherwise(self.model, made_of(Input, fields))
+            wings.use("circuits.inverting").driven_otherwise(self.model, made_of(Input, fields))
         )
 
     def inversion(self, link: str, *, input: Input | None = None) -> Self:
@@ -662,7 +666,7 @@ class Mechanism:
         >>> lw.example("four-bar").inversion("coupler").name
         'Four-bar linkage, open, coupler fixed'
         """
-        return type(self)(wings.use("circuits").inversion(self.model, link, input))
+        return type(self)(wings.use("circuits.inverting").inversion(self.model, link, input))
 
     def scene(
         self,
@@ -804,7 +808,7 @@ class Mechanism:
         MissingPackageError
             If the package that writes the format is not installed.
         """
-        wings.use("app").animate(
+        wings.use("app.pages.animation").animate(
             self,
             path,
             motion,
@@ -846,7 +850,9 @@ class Mechanism:
         MissingPackageError
             If anywidget is not installed.
         """
-        return wings.use("app").widget(self, motion, all_circuits=all_circuits, forces=forces)
+        return wings.use("app.pages.notebook").widget(
+            self, motion, all_circuits=all_circuits, forces=forces
+        )
 
     def write(self, path: str | Path, kind: str | None = None, **options: Any) -> Any:
         """Write the mechanism for another program, a workshop, a robot or a reader.

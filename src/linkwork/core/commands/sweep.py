@@ -216,7 +216,7 @@ def sweep_command(
             check_picture(name)
     check_outputs(file, csv, draw, plot, workbook=xlsx, as_json=as_json)
     if xlsx is not None:
-        wings.use("writers").check_xlsxwriter()
+        wings.use("writers.workbook.workbook").check_xlsxwriter()
     mechanism = read_mechanism(file, changes)
     if draw is not None:
         check_points(mechanism)
@@ -293,7 +293,9 @@ def _written_workbook(
 ) -> list[str]:
     """Write the workbook; returns lines about it and its values that do not recalculate."""
     with progress("writing the workbook") as tell:
-        found = wings.use("writers").workbook_of(mechanism.model, motion, columns, tell)
+        found = wings.use("writers.workbook.workbook").workbook_of(
+            mechanism.model, motion, columns, tell
+        )
     write_bytes(path, [found.content])
     rows = int(motion.asked.sum())
     said = [f"Wrote {path}: {rows} rows with formulas; edit a yellow cell to solve them again."]

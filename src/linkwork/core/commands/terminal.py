@@ -21,6 +21,7 @@ import time
 import unicodedata
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager, suppress
+from dataclasses import replace
 from types import FrameType
 from typing import TYPE_CHECKING, Any, NoReturn
 
@@ -156,7 +157,7 @@ def _at_point(cells: Sequence[str]) -> list[str]:
 
 def _shortened(column: Column, room: int) -> Column:
     cells = [_cut(cell, max(room, 8)) for cell in column.cells]
-    return Column(header=column.header, cells=cells, align=column.align)
+    return replace(column, cells=cells)
 
 
 def _cut(text: str, room: int) -> str:

@@ -1,4 +1,4 @@
-"""Derivatives."""
+"""Derivatives of formulas, symbolic and by jets."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Trees."""
+"""Formulas as trees, and their text."""
 
 from __future__ import annotations
 

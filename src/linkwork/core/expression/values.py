@@ -1,4 +1,4 @@
-"""Values."""
+"""Values of formulas, in doubles, 32 digits and lanes."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Arrays."""
+"""Types of arrays, small matrices, stacked systems, disjoint sets."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Containers."""
+"""Frozen mappings, named sequences, deferred values."""
 
 from __future__ import annotations
 

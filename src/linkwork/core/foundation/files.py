@@ -1,4 +1,4 @@
-"""Files."""
+"""Writing files and folders whole or not at all, and the folder of caches."""
 
 from __future__ import annotations
 

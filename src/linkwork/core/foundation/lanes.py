@@ -1,4 +1,4 @@
-"""Lanes."""
+"""Functions of numbers that work on floats, arrays and lanes alike."""
 
 from __future__ import annotations
 

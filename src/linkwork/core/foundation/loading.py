@@ -1,4 +1,4 @@
-"""Loading."""
+"""Loading public names, optional packages and threads when they are needed."""
 
 from __future__ import annotations
 

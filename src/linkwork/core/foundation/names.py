@@ -1,4 +1,4 @@
-"""Names."""
+"""Names of points, links and unknowns: Greek letters, spelling, LaTeX."""
 
 from __future__ import annotations
 

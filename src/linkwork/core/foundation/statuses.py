@@ -1,4 +1,4 @@
-"""Statuses."""
+"""The statuses of positions, circuits and proofs."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Units."""
+"""Units of length and angle."""
 
 from __future__ import annotations
 

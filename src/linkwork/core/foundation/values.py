@@ -1,4 +1,4 @@
-"""Values."""
+"""Values that users pass: numbers, formulas, flags, and their checks."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Inputs."""
+"""Driven quantities: ranges, speeds, laws in time, motors."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Shapes."""
+"""The shape of a link from its lengths and angles."""
 
 from __future__ import annotations
 

@@ -347,7 +347,7 @@ class Model:
         """The efforts of the inputs and the reactions of the joints; none without loads."""
         if not getattr(self.description, "loaded", False):
             return ()
-        return wings.use("forces").force_quantities(self)
+        return wings.use("forces.reactions.solving").force_quantities(self)
 
     def beside_switches(self, at: Callable[[Array], Solved], t: Array) -> Array:
         """Places just before and just behind all switches of loads between rising values t (B,) of
@@ -355,7 +355,7 @@ class Model:
         """
         if not getattr(self.description, "loaded", False):
             return np.zeros(0)
-        return wings.use("forces").beside_switches(self, at, t)
+        return wings.use("forces.reactions.switches").beside_switches(self, at, t)
 
     def derivatives(self, solved: Solved, asked: Asked, order: int) -> Array:
         """The derivatives of a quantity with respect to the leading input, from the first to one of

@@ -349,7 +349,9 @@ def as_described(description: Description) -> Model:
     if not description.configuration:
         return model
     try:
-        return wings.use("circuits").start_in_configuration(model, description.configuration)
+        return wings.use("circuits.configuration_list").start_in_configuration(
+            model, description.configuration
+        )
     except InputError as error:
         problem = Problem(key=("configuration",), message=str(error))
         raise MechanismError([problem], f'mechanism "{description.name}"') from None

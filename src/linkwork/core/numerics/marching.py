@@ -1,4 +1,4 @@
-"""Marching."""
+"""The steps of path following: functions that choose, predict, attempt and resize a step."""
 
 from __future__ import annotations
 

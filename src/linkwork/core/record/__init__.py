@@ -1,1 +1,1 @@
-"""record."""
+"""Arithmetic that is recorded once and printed in a language."""

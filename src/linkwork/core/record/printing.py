@@ -1,4 +1,4 @@
-"""Printing."""
+"""Recorded arithmetic printed in a language."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Recording."""
+"""Numbers that record their arithmetic as instructions."""
 
 from __future__ import annotations
 

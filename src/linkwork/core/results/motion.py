@@ -427,7 +427,7 @@ class Motion:
         MissingPackageError
             If Matplotlib is not installed.
         """
-        return wings.use("writers").plot_motion(
+        return wings.use("writers.charts.matplotlib_plot").plot_motion(
             self,
             *names,
             kind=kind,
@@ -466,7 +466,9 @@ class Motion:
         MissingPackageError
             If the package that writes the format is not installed.
         """
-        wings.use("app").animate_motion(self, path, options=options, progress=progress)
+        wings.use("app.pages.animation").animate_motion(
+            self, path, options=options, progress=progress
+        )
 
     def widget(self) -> Any:
         """The motion as a notebook widget to play and drag; needs the extra ``notebook``.
@@ -483,14 +485,14 @@ class Motion:
         MissingPackageError
             If anywidget is not installed.
         """
-        return wings.use("app").motion_widget(self)
+        return wings.use("app.pages.notebook").motion_widget(self)
 
     def __repr__(self) -> str:
         return motion_text(self)
 
     def _repr_html_(self) -> str:
         """A picture and a short table, for notebooks."""
-        return wings.use("app").motion_html(self)
+        return wings.use("app.pages.notebook").motion_html(self)
 
     @property
     def counts(self) -> Counter[Status]:

@@ -53,7 +53,7 @@ class NearestAssembly:
     --------
     >>> import linkwork as lw
     >>> short = lw.example("four-bar").with_dimensions({"A B": 20})
-    >>> round(short.nearest_assembly(at=180).gap, 1)  # mm
+    >>> round(lw.circuits.nearest_assembly(short, at=180).gap, 1)  # mm
     40.0
     """
 

@@ -265,7 +265,7 @@ class Position:
 
     def _repr_html_(self) -> str:
         """A picture and a short table, for notebooks."""
-        return wings.use("app").position_html(self)
+        return wings.use("app.pages.notebook").position_html(self)
 
     def to_dict(self) -> dict[str, Any]:
         """The position as JSON-ready data: NaN becomes null, the status its member name.

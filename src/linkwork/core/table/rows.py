@@ -1,4 +1,4 @@
-"""Rows."""
+"""Equations as rows of phasor terms."""
 
 from __future__ import annotations
 

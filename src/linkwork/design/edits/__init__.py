@@ -1,1 +1,1 @@
-"""edits."""
+"""The numbers of a file: where they stand, their units, changes of units."""

@@ -7,12 +7,14 @@ from typing import TYPE_CHECKING
 from linkwork.core.foundation.loading import loader
 
 if TYPE_CHECKING:
-    from linkwork.families.by_kernels.rows import (
+    from linkwork.families.by_kernels.choice import (
         are_served as are_served,
+        kernels_pay as kernels_pay,
+    )
+    from linkwork.families.by_kernels.rows import (
         block_parts as block_parts,
         kernel_of as kernel_of,
         kernel_rows as kernel_rows,
-        kernels_pay as kernels_pay,
         lines_of_lengths as lines_of_lengths,
     )
 else:  # rows and kernels load compiled code

@@ -293,7 +293,7 @@ class PlateStack:
     --------
     >>> import linkwork as lw, tempfile
     >>> with tempfile.TemporaryDirectory() as folder:
-    ...     stack = lw.example("four-bar").write(f"{folder}/plates.svg")
+    ...     stack = lw.example("four-bar").write(f"{folder}/plates.svg", kind="plates")
     >>> sorted(stack.layer.items())
     [('coupler', 2), ('crank', 1), ('ground', 0), ('rocker', 1)]
     >>> stack.proved

@@ -88,7 +88,7 @@ def report(
     --------
     >>> import linkwork as lw, tempfile
     >>> with tempfile.TemporaryDirectory() as folder:
-    ...     (file,) = lw.example("four-bar").write(f"{folder}/bar.html", title="Bar")
+    ...     (file,) = lw.example("four-bar").write(f"{folder}/bar.html", kind="report", title="Bar")
     ...     text = file.read_text("utf-8")
     >>> file.name, "What is proved" in text
     ('bar.html', True)
