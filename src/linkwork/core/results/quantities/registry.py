@@ -10,6 +10,7 @@ from functools import cache, cached_property
 
 import numpy as np
 
+from linkwork import wings
 from linkwork.core.foundation.errors import InputError, UnknownNameError, choices
 from linkwork.core.foundation.names import as_name, canonical, find_spelling
 from linkwork.core.results import quantities as every
@@ -47,9 +48,17 @@ MOTION_QUANTITIES: tuple[MotionQuantity, ...] = (
 )
 
 
+@cache
+def row_quantities() -> tuple[RowQuantity, ...]:
+    """All quantities of rows: those of the core, then those of wings."""
+    places = [place for wing in wings.wings() for place in wing.quantities]
+    return (*ROW_QUANTITIES, *(row for place in places for row in wings.load(place)))
+
+
 def row_quantity(name: str) -> RowQuantity | None:
     """The quantity that a name ends with: that of ``B.transmission``."""
-    return next((row for row in ROW_QUANTITIES if name.endswith(f".{row.word}")), None)
+    known = row_quantities() if "." in name else ()
+    return next((row for row in known if name.endswith(f".{row.word}")), None)
 
 
 # ----------------------------------------------------------------------
@@ -131,7 +140,7 @@ class Quantities:
     def derived(self) -> dict[str, Asked]:
         """Quantities that follow from the mechanism's own, by name."""
         found: dict[str, Asked] = {}
-        for row in (*every.ROW_QUANTITIES, *self.names.further):
+        for row in (*row_quantities(), *self.names.further):
             for part, kind in row.of(self.names).items():
                 own = Quantity(name=f"{part}.{row.word}" if part else row.word, kind=kind)
                 found[own.name] = Asked(
