@@ -117,11 +117,7 @@ WINGS = (
         title="Pictures and files for other programs",
         commands={
             "plot": "Plot columns, paths, hodographs, transmission angles or circuits.",
-            "report": "Write a report of the mechanism, for a design file or as homework.",
-            "export": "Write the mechanism as a text of another program.",
-            "code": "Write the solver as a program in another language.",
-            "plates": "Write the links as plates to cut or print.",
-            "robot": "Write the mechanism for a simulator of robots.",
+            "export": "Write a workbook, program, report, plates, a robot, a text.",
         },
     ),
     Wing(

@@ -44,11 +44,11 @@ def test_a_wrong_file_is_refused_with_its_line(run: Run) -> None:
 
 
 def test_an_export_can_be_imported(run: Run) -> None:
-    done = run("export", "four-bar", "--as", "pmks")
+    done = run("export", "pmks", "four-bar")
     assert done.stdout.startswith("https://app.pmksplus.com/?")
     assert "left out:" in done.stderr
     again = run("import", done.stdout.strip(), "-o", "again.toml")
     assert again.exit_code == 0
     assert lw.load("again.toml").sweep(step=90).found.all()
-    run("export", "four-bar", "--as", "pylinkage", "-o", "bar.json", "--at", "60")
+    run("export", "pylinkage", "four-bar", "-o", "bar.json", "--at", "60")
     assert json.loads(Path("bar.json").read_text("utf-8"))["ground"] == "ground"

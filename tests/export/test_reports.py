@@ -522,7 +522,15 @@ def test_pictures_are_not_written_without_their_file(tmp_path: Path) -> None:
 
 def test_the_command_writes_a_report(tmp_path: Path) -> None:
     (tmp_path / "short.toml").write_text('sections = ["proof"]')
-    args = ["report", "four-bar", "-o", str(tmp_path / "bar.html"), "--author", "B. Engineer"]
+    args = [
+        "export",
+        "report",
+        "four-bar",
+        "-o",
+        str(tmp_path / "bar.html"),
+        "--author",
+        "B. Engineer",
+    ]
     done = CliRunner().invoke(linkwork, [*args, "--template", str(tmp_path / "short.toml")])
     assert done.output == f"Wrote {tmp_path / 'bar.html'}.\n"
     assert "B. Engineer" in (tmp_path / "bar.html").read_text("utf-8")

@@ -45,7 +45,7 @@ from linkwork.core.commands.terminal import (
 )
 from linkwork.core.drawing.picture_file import check_picture, write
 from linkwork.core.drawing.scene import theme_named
-from linkwork.core.foundation.errors import InputError
+from linkwork.core.foundation.errors import InputError, choices
 from linkwork.core.foundation.statuses import ChangePointPolicy
 from linkwork.core.mechanism.dimensions import Number
 from linkwork.core.results.listing.motion_listing import Column
@@ -61,6 +61,7 @@ from linkwork.writers.report.findings import template_of
 from linkwork.writers.report.gathering import report
 from linkwork.writers.report.report import check_report_file
 from linkwork.writers.robot.files import check_robot_file, robot_of
+from linkwork.writers.writing import kind_of, writers
 
 # ----------------------------------------------------------------------
 # ``linkwork plot``
@@ -170,10 +171,10 @@ def _circuits(mechanism: Mechanism, kind: str, options: dict[str, Any]) -> Circu
 
 
 # ----------------------------------------------------------------------
-# ``linkwork code``
+# ``linkwork export program``
 
 
-@click.command("code")
+@click.command("program")
 @file_argument
 @click.option(
     "-o",
@@ -187,7 +188,7 @@ def _circuits(mechanism: Mechanism, kind: str, options: dict[str, Any]) -> Circu
 @set_option
 @json_option
 @debug_option
-def code_command(
+def program_command(
     file: str,
     output: str,
     start: Number | None,
@@ -204,9 +205,9 @@ def code_command(
     as CSV. It needs no Linkwork.
 
     \b
-      linkwork code rapier.toml -o rapier.py
-      linkwork code rapier.toml -o rapier.c --from 0 --to 90 --step 0.5
-      linkwork code fourbar.toml -o crossed.js --configuration crossed
+      linkwork export rapier.toml -o rapier.py
+      linkwork export rapier.toml -o rapier.c --from 0 --to 90 --step 0.5
+      linkwork export fourbar.toml -o crossed.js --configuration crossed
     """
     path = Path(output)
     language_of(path)
@@ -223,55 +224,7 @@ def code_command(
 
 
 # ----------------------------------------------------------------------
-# ``linkwork export``
-
-
-@click.command("export")
-@file_argument
-@click.option(
-    "--as", "form", type=click.Choice(WRITERS), required=True, help="The format of the text."
-)
-@click.option("-o", "--output", metavar="PATH", help="Write to this file instead of the terminal.")
-@at_option
-@configuration_option
-@set_option
-@json_option
-@debug_option
-def export_command(
-    file: str,
-    form: str,
-    output: str | None,
-    at: tuple[str, ...],
-    configuration: str | None,
-    changes: tuple[str, ...],
-    as_json: bool,
-) -> None:
-    """Write the mechanism as a text of another program.
-
-    A link of PMKS+, JSON of pylinkage or an expression of Pyslvs, in the
-    start position, --at. What is left out is listed on the error stream.
-
-    \b
-      linkwork export hoeken --as pmks
-      linkwork export fourbar.toml --as pylinkage -o fourbar.json
-    """
-    check_outputs(file, output)
-    mechanism = read_mechanism(file, changes)
-    made = exported(mechanism, form, input_values(mechanism, at), configuration=configuration)
-    if output is not None:
-        write_text(output, [made.text])
-    if as_json:
-        notes = [{"what": own.what, "places": list(own.places)} for own in made.left_out]
-        print_json({"text": made.text, "left_out": notes, "written": [output] if output else []})
-        return
-    click.echo(made.text if output is None else f"Wrote {output}.\n", nl=False)
-    lines = [line for own in made.left_out for line in wrapped(f"left out: {own}", "", "  ")]
-    if lines:
-        print_lines(lines, err=True)
-
-
-# ----------------------------------------------------------------------
-# ``linkwork report``
+# ``linkwork export report``
 
 
 @click.command("report")
@@ -312,9 +265,9 @@ def report_command(
     Markdown has its pictures in the folder NAME-pictures next to it.
 
     \b
-      linkwork report rapier.toml -o rapier.html
-      linkwork report rapier.toml -o rapier.pdf --template student --at 60
-      linkwork report press.toml -o press.docx --author "A. Student"
+      linkwork export report rapier.toml -o rapier.html
+      linkwork export report rapier.toml -o rapier.pdf --template student --at 60
+      linkwork export report press.toml -o press.docx --author "A. Student"
     """
     check_report_file(Path(output))
     check_outputs(file, output)
@@ -337,7 +290,7 @@ def report_command(
 
 
 # ----------------------------------------------------------------------
-# ``linkwork plates``
+# ``linkwork export plates``
 
 
 _SIZES = (
@@ -401,9 +354,9 @@ def plates_command(
     the plates are assembled.
 
     \b
-      linkwork plates fourbar.toml -o fourbar.dxf --layout --kerf 0.15
-      linkwork plates fourbar.toml -o fourbar.3mf --layout --bill bill.csv
-      linkwork plates fourbar.toml -o fourbar.svg --width 14 --pin 4
+      linkwork export fourbar.toml -o fourbar.dxf --layout --kerf 0.15
+      linkwork export fourbar.toml -o fourbar.3mf --layout --bill bill.csv
+      linkwork export plates fourbar.toml -o fourbar.svg --width 14 --pin 4
     """
     path = Path(output)
     check_plate_file(path)
@@ -464,7 +417,7 @@ def _cell(value: float) -> str:
 
 
 # ----------------------------------------------------------------------
-# ``linkwork robot``
+# ``linkwork export robot``
 
 
 @click.command("robot")
@@ -492,8 +445,8 @@ def robot_command(
     values are zero in the start position, --at.
 
     \b
-      linkwork robot fourbar.toml -o fourbar.mjcf
-      linkwork robot fourbar.toml -o fourbar.urdf --at 60
+      linkwork export fourbar.toml -o fourbar.mjcf
+      linkwork export fourbar.toml -o fourbar.urdf --at 60
     """
     path = Path(output)
     suffix = check_robot_file(path)
@@ -506,3 +459,127 @@ def robot_command(
             motion = mechanism.sweep(configuration=configuration, progress=tell)
     write_text(output, [robot_of(mechanism.model, start, motion, path)])
     print_written(output, as_json)
+
+
+# ----------------------------------------------------------------------
+# ``linkwork export pmks``, and the other formats that are texts
+
+
+def _text_command(form: str) -> click.Command:
+    @click.command(form)
+    @file_argument
+    @click.option(
+        "-o", "--output", metavar="PATH", help="Write to this file instead of the terminal."
+    )
+    @at_option
+    @configuration_option
+    @set_option
+    @json_option
+    @debug_option
+    def command(
+        file: str,
+        output: str | None,
+        at: tuple[str, ...],
+        configuration: str | None,
+        changes: tuple[str, ...],
+        as_json: bool,
+    ) -> None:
+        """Write the mechanism as a text of another program.
+
+        pmks is a link of PMKS+, pylinkage JSON, pyslvs an expression of Pyslvs, in the
+        start position, --at. What is left out is listed on the error stream.
+
+        \b
+          linkwork export pmks hoeken
+          linkwork export pylinkage fourbar.toml -o fourbar.json
+        """
+        check_outputs(file, output)
+        mechanism = read_mechanism(file, changes)
+        made = exported(mechanism, form, input_values(mechanism, at), configuration=configuration)
+        if output is not None:
+            write_text(output, [made.text])
+        if as_json:
+            notes = [{"what": own.what, "places": list(own.places)} for own in made.left_out]
+            print_json(
+                {"text": made.text, "left_out": notes, "written": [output] if output else []}
+            )
+            return
+        click.echo(made.text if output is None else f"Wrote {output}.\n", nl=False)
+        lines = [line for own in made.left_out for line in wrapped(f"left out: {own}", "", "  ")]
+        if lines:
+            print_lines(lines, err=True)
+
+    return command
+
+
+# ----------------------------------------------------------------------
+# ``linkwork export``
+
+
+def _plain_command(kind: str) -> click.Command:
+    """The command of a kind of file that has no options."""
+
+    @click.command(kind, help=f"Write a {kind}.")
+    @file_argument
+    @click.option("-o", "--output", metavar="PATH", required=True, help="The file.")
+    @set_option
+    @json_option
+    @debug_option
+    def command(file: str, output: str, changes: tuple[str, ...], as_json: bool) -> None:
+        is_book = output.lower().endswith(".xlsx")
+        check_outputs(file, None if is_book else output, workbook=output if is_book else None)
+        mechanism = read_mechanism(file, changes)
+        with progress(f"writing the {kind}"):
+            mechanism.write(output, kind)
+        print_written(output, as_json)
+
+    return command
+
+
+_COMMANDS = {
+    "program": program_command,
+    "report": report_command,
+    "plates": plates_command,
+    "robot": robot_command,
+    **{form: _text_command(form) for form in WRITERS},
+}
+
+
+class _Export(click.Group):
+    """One command for each kind of file; the suffix of the file chooses it, or its name does."""
+
+    def list_commands(self, ctx: click.Context) -> list[str]:
+        return list(dict.fromkeys([*_COMMANDS, *writers()]))
+
+    def get_command(self, ctx: click.Context, cmd_name: str) -> click.Command | None:
+        if cmd_name in _COMMANDS:
+            return _COMMANDS[cmd_name]
+        return _plain_command(cmd_name) if cmd_name in writers() else None
+
+    def parse_args(self, ctx: click.Context, args: list[str]) -> list[str]:
+        first = args[0] if args else "--help"
+        if not first.startswith("-") and first not in self.list_commands(ctx):
+            places = [k + 1 for k, word in enumerate(args) if word in ("-o", "--output")]
+            if not places or places[-1] >= len(args):
+                raise InputError(
+                    "name the file, linkwork export FILE -o PATH, or the kind "
+                    f"{choices('kinds', self.list_commands(ctx))}"
+                )
+            args = [kind_of(args[places[-1]]), *args]
+        return super().parse_args(ctx, args)
+
+
+@click.group("export", cls=_Export, subcommand_metavar="[KIND] FILE -o PATH")
+@debug_option
+def export_command() -> None:
+    """Write the mechanism for another program, a workshop, a robot or a reader.
+
+    The suffix of the file chooses the kind, which can also be named;
+    "linkwork export KIND --help" lists its options.
+
+    \b
+      linkwork export rapier.toml -o rapier.xlsx
+      linkwork export rapier.toml -o rapier.c
+      linkwork export rapier.toml -o plates.dxf
+      linkwork export report rapier.toml -o rapier.pdf
+    """

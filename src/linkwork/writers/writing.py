@@ -241,19 +241,28 @@ def writers() -> dict[str, Writer]:
     return {**WRITERS, **more}
 
 
+def kind_of(path: str | Path) -> str:
+    """The kind of file that a suffix selects.
+
+    Raises
+    ------
+    InputError
+        If none has it.
+    """
+    known, suffix = writers(), as_path(path).suffix.lower()
+    for name, writer in known.items():
+        if suffix in writer.suffixes:
+            return name
+    suffixes = sorted(s for writer in known.values() for s in writer.suffixes)
+    raise InputError(
+        f'cannot write "{path}": no kind of file has the suffix "{suffix}" '
+        f"{choices('suffixes', suffixes)}; or name the kind {choices('kinds', known)}"
+    )
+
+
 def write(mechanism: Mechanism, path: str | Path, kind: str | None = None, **options: Any) -> Any:
     """Write a mechanism to a file; see :meth:`Mechanism.write`."""
-    known = writers()
-    suffix = as_path(path).suffix.lower()
-    if kind is None:
-        fitting = [name for name, writer in known.items() if suffix in writer.suffixes]
-        if not fitting:
-            suffixes = sorted(s for writer in known.values() for s in writer.suffixes)
-            raise InputError(
-                f'cannot write "{path}": no kind of file has the suffix "{suffix}" '
-                f"{choices('suffixes', suffixes)}; or name the kind {choices('kinds', known)}"
-            )
-        kind = fitting[0]
+    known, kind = writers(), kind_of(path) if kind is None else kind
     if kind not in known:
         raise UnknownNameError(f'there is no kind of file "{kind}" {choices("kinds", known, kind)}')
     chosen = known[kind].write
