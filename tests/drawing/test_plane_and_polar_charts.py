@@ -136,6 +136,7 @@ def test_a_hodograph_that_runs_to_infinity_leaves_its_panel() -> None:
         inside, every = ((x > low) & (x < high)).sum(), np.isfinite(x).sum()
         assert 0.75 * every < inside
         assert (inside < every) == leaves
+        assert (high - low < 0.1 * np.ptp(x[np.isfinite(x)])) == leaves
 
 
 # ------------------------------------------------------------------ polar
