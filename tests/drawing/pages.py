@@ -5,13 +5,73 @@ from __future__ import annotations
 import re
 from itertools import combinations
 
+import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
 from matplotlib.text import Text
 from matplotlib.transforms import Bbox
 
-__all__ = ["assert_page_is_clear", "left_title", "printed_texts", "size_in_inches", "svg_texts"]
+from linkwork.core.drawing.scene import LIGHT
+from linkwork.core.foundation.arrays import Array
+from linkwork.writers.charts.chart import Chart
+
+__all__ = [
+    "assert_drawn", "assert_page_is_clear", "axes_of", "curves_of", "left_title", "legend_of",
+    "marks_of", "pieces", "printed_texts", "rules_of", "size_in_inches", "svg_texts",
+]  # fmt: skip
+
+
+def axes_of(chart: Chart) -> list[Axes]:
+    """The axes of a chart's panels, drawn."""
+    return chart.figure(LIGHT).axes
+
+
+def curves_of(ax: Axes) -> list[Line2D]:
+    return [line for line in ax.lines if str(line.get_gid()).startswith("curve:")]
+
+
+def _points(line: Line2D) -> Array:
+    return np.asarray(line.get_xydata(), dtype=float)
+
+
+def marks_of(ax: Axes, kind: str) -> list[tuple[float, float]]:
+    """The marks of a kind that are inside the axes, to nine decimals."""
+    lines = [line for line in ax.lines if line.get_gid() == kind.replace(" ", "-")]
+    every = np.concatenate([np.empty((0, 2)), *map(_points, lines)])
+    low, high = np.transpose([ax.get_xlim(), ax.get_ylim()])
+    inside = (every >= low).all(axis=1) & (every <= high).all(axis=1)
+    return [(x + 0.0, y + 0.0) for x, y in np.round(every[inside], 9).tolist()]
+
+
+def rules_of(ax: Axes, kind: str) -> list[float]:
+    """The inputs at which a line across the panel shows a limit."""
+    lines = [line for line in ax.lines if line.get_gid() == f"rule:{kind.replace(' ', '-')}"]
+    return [float(_points(line)[0, 0]) for line in lines]
+
+
+def pieces(line: Line2D) -> list[Array]:
+    """The drawn pieces of a curve, each (K, 2)."""
+    points = _points(line)
+    found = np.isfinite(points).all(axis=1)
+    cuts = np.flatnonzero(np.diff(found.astype(int))) + 1
+    return [part for part in np.split(points, cuts) if np.isfinite(part).all()]
+
+
+def assert_drawn(line: Line2D, x: Array, y: Array) -> None:
+    """A curve passes through all rows, and nothing is drawn where there are none."""
+    rows = np.stack([x, y], axis=1)
+    rows = rows[np.isfinite(rows).all(axis=1)]
+    drawn = {tuple(point) for point in _points(line).tolist()}
+    assert {tuple(row) for row in rows.tolist()} <= drawn
+    within = np.concatenate(pieces(line))
+    assert (within.min(axis=0) >= rows.min(axis=0) - 1e-2 * np.ptp(rows, axis=0)).all()
+    assert (within.max(axis=0) <= rows.max(axis=0) + 1e-2 * np.ptp(rows, axis=0)).all()
+
+
+def legend_of(page: Figure) -> list[str]:
+    return [text.get_text() for legend in page.legends for text in legend.get_texts()]
 
 
 def printed_texts(page: Figure) -> list[tuple[str, Bbox]]:

@@ -7,14 +7,12 @@ import tracemalloc
 import numpy as np
 
 from linkwork.core.foundation.arrays import Array
-from linkwork.writers.charts.chart import Curve
-from linkwork.writers.charts.columns import layered
+from linkwork.writers.charts.lines import covering
 
 
 def _below(*heights: Array) -> list[int]:
     x = np.linspace(0.0, 1.0, len(heights[0]))
-    curves = [Curve(x=x, y=y, tone=k, name=str(k)) for k, y in enumerate(heights, 1)]
-    return [curve.below for curve in layered(curves)]
+    return covering([(x, y) for y in heights], range(len(heights)))
 
 
 def test_a_curve_is_below_the_later_ones_that_cover_it() -> None:

@@ -63,26 +63,49 @@ def test_text_is_escaped() -> None:
     )
 
 
-def test_a_chart_contains_the_numbers_of_its_curves(tmp_path: Path) -> None:
+def _lines(text: str) -> list[np.ndarray]:
+    """The corners of the lines of a picture [inches]."""
+    places = re.compile(r"\\pgfqpoint\{([-\d.]+)in\}\{([-\d.]+)in\}")
+    scopes = [scope for scope in text.split("\\begin{pgfscope}") if "pgfpathlineto" in scope]
+    return [
+        np.array([places.findall(step)[0] for step in scope.split("\n") if "pgfpath" in step
+                  and "rectangle" not in step and "close" not in step], dtype=float)
+        for scope in scopes
+    ]  # fmt: skip
+
+
+def test_a_chart_contains_its_curve_to_scale(tmp_path: Path) -> None:
     motion = read_example("four-bar").sweep()
     file = write(motion_plot(motion, ["rocker"]), tmp_path / "rocker.tikz")
     text = file.read_text("utf-8")
-    table = re.search(r"table \{\n(.*?)\};", text, re.DOTALL)
-    assert table is not None
-    numbers = np.array([line.split() for line in table[1].strip().splitlines()], dtype=float)
-    assert numbers[:, 0] == pytest.approx(motion["crank"], abs=1e-9)
-    assert numbers[:, 1] == pytest.approx(motion["rocker"], abs=1e-9)  # twelve digits
-    assert text.count("\\begin{") == text.count("\\end{") == 2
+    longest = max(_lines(text), key=len)
+    for drawn, values in zip(longest.T, (motion["crank"], motion["rocker"]), strict=True):
+        assert len(drawn) == len(values)
+        fitted = np.polyval(np.polyfit(values, drawn, 1), values)
+        assert np.abs(drawn - fitted).max() < 2e-6
 
 
-def test_every_kind_of_chart_is_written(tmp_path: Path) -> None:
+def test_every_kind_of_chart_is_written_without_latex(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setenv("PATH", str(tmp_path))  # no LaTeX there
     motion = read_example("four-bar").sweep(step=10)
     for kind, names in (("polar", ["rocker"]), ("path", ["B"]), ("transmission", []),
                         ("hodograph", ["B"])):  # fmt: skip
         file = write(motion_plot(motion, names, kind=kind), tmp_path / f"{kind}.tikz")
         text = file.read_text("utf-8")
-        assert text.count("\\addplot") >= 1
-        assert ("polaraxis" in text) is (kind == "polar")
+        assert text.isascii()
+        assert text.count("\\begin{") == text.count("\\end{") > 10
+        assert "Four-bar linkage" in text
+        assert _lines(text)
+
+
+def test_texts_of_a_chart_are_those_of_latex(tmp_path: Path) -> None:
+    motion = read_example("rapier-drive").sweep(step=10)
+    file = write(motion_plot(motion, ["theta13"]), tmp_path / "theta.tikz")
+    text = file.read_text("utf-8")
+    assert as_latex("θ₁₃ [deg]") in text
+    assert "\\usepackage{pgf}" in text
 
 
 def test_a_sheet_of_several_positions_is_refused(tmp_path: Path) -> None:

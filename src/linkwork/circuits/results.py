@@ -248,7 +248,7 @@ class Circuits(NamedSequence[Circuit]):
         UnknownNameError
             For a name that does not exist.
         """
-        return wings.use("writers.charts.matplotlib_plot").plot_circuits(
+        return wings.use("writers.charts.plotting").plot_circuits(
             self, *names, kind=kind, ax=ax, theme=theme, title=title
         )
 

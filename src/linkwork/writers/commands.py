@@ -44,14 +44,13 @@ from linkwork.core.commands.terminal import (
     wrapped,
 )
 from linkwork.core.drawing.picture_file import check_picture, write
-from linkwork.core.drawing.scene import theme_named
+from linkwork.core.drawing.scene import THEMES, theme_named
 from linkwork.core.foundation.errors import InputError, choices
 from linkwork.core.foundation.statuses import ChangePointPolicy
 from linkwork.core.mechanism.dimensions import Number
 from linkwork.core.results.listing.motion_listing import Column
 from linkwork.readers.formats import WRITERS
 from linkwork.readers.imported import exported
-from linkwork.writers.charts.chart import THEMES
 from linkwork.writers.charts.plotting import CIRCUIT_KINDS, PlotKind, circuits_plot, motion_plot
 from linkwork.writers.code.languages import code_of, language_of
 from linkwork.writers.plates.files import check_plate_file, plates_of

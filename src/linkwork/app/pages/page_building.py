@@ -45,8 +45,7 @@ from linkwork.core.results.quantities.registry import Call
 from linkwork.core.results.quantities.rows import RECOMMENDED, TRANSMISSION_ANGLE
 from linkwork.core.results.quantity import Kind, Rate
 from linkwork.core.results.vector_loop import MovingLoop
-from linkwork.writers.charts.chart import rate_label, size_label
-from linkwork.writers.charts.columns import lead_of
+from linkwork.writers.charts.columns import lead_of, rate_label, size_label
 
 _MOST_NUMBERED = 5  # quantities with numbers of the motion by default
 

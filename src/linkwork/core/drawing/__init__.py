@@ -33,11 +33,5 @@ if TYPE_CHECKING:
         Theme as Theme,
         theme_named as theme_named,
     )
-    from linkwork.writers.charts.chart import Chart as Chart
-    from linkwork.writers.charts.circuits import circuit_chart as circuit_chart
-    from linkwork.writers.charts.matplotlib_plot import (
-        plot_circuits as plot_circuits,
-        plot_motion as plot_motion,
-    )
 else:
     __getattr__ = loader(__name__)

@@ -22,4 +22,5 @@ def house_settings() -> Iterator[None]:
         matplotlib.rcParams["svg.hashsalt"] = "linkwork"
         matplotlib.rcParams["path.simplify"] = False  # files show the coordinates of the scene
         matplotlib.rcParams["pdf.fonttype"] = 42  # journals reject PDF files with Type 3 fonts
+        matplotlib.rcParams["pgf.rcfonts"] = False  # LaTeX files use the fonts of the document
         yield

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import io
 import math
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Protocol
 
 from linkwork.core.drawing.matplotlib_settings import house_settings
 from linkwork.core.drawing.mechanism_scene import TALLEST, Sheet
@@ -27,15 +27,12 @@ from linkwork.core.drawing.scene import (
     Text,
     Theme,
 )
-from linkwork.core.foundation.errors import InputError
-from linkwork.writers.charts.chart import Chart, ChartTheme
-from linkwork.writers.charts.matplotlib_plot import chart_figure
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
-__all__ = ["FORMATS", "Brush", "figure", "image"]
+__all__ = ["FORMATS", "Brush", "Chart", "figure", "image"]
 
 #: Formats of image files.
 FORMATS = ("png", "svg", "pdf")
@@ -58,26 +55,22 @@ _DATELESS: dict[str, dict[str, str | None]] = {
 }
 
 
-def image(
-    scene: Scene | Chart | Sheet, kind: str, *, dpi: float, theme: Theme | ChartTheme
-) -> bytes:
-    """A scene, chart or sheet as the content of a PNG, SVG or PDF file.
+class Chart(Protocol):
+    """What draws itself in the colours of a theme, on a figure or as text for LaTeX."""
 
-    Raises
-    ------
-    InputError
-        If a drawing has a theme of charts.
-    """
+    def figure(self, theme: Theme) -> Figure: ...
+
+    def tikz(self, theme: Theme) -> str: ...
+
+
+def image(scene: Scene | Chart | Sheet, kind: str, *, dpi: float, theme: Theme) -> bytes:
+    """A scene, chart or sheet as the content of a PNG, SVG or PDF file."""
     buffer = io.BytesIO()
     with house_settings():
-        if isinstance(scene, Chart):
-            page = chart_figure(scene, theme)
-        elif isinstance(theme, ChartTheme):
-            raise InputError("a drawing needs a theme for drawings, not one for charts")
-        elif isinstance(scene, Sheet):
-            page = _sheet_figure(scene, theme)
-        else:
+        if isinstance(scene, Scene):
             page = figure(scene, theme=theme)
+        else:
+            page = _sheet_figure(scene, theme) if isinstance(scene, Sheet) else scene.figure(theme)
         page.savefig(buffer, format=kind, dpi=dpi, metadata=_DATELESS[kind])
     return buffer.getvalue()
 

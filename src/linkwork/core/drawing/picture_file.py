@@ -5,13 +5,12 @@ from __future__ import annotations
 from pathlib import Path
 
 from linkwork.core.drawing import matplotlib_writer
+from linkwork.core.drawing.matplotlib_writer import Chart
 from linkwork.core.drawing.mechanism_scene import Sheet
 from linkwork.core.drawing.scene import LIGHT, Scene, Theme
 from linkwork.core.drawing.tikz import tikz_picture
 from linkwork.core.foundation.errors import InputError
 from linkwork.core.foundation.files import as_path, save_bytes, suffix_of
-from linkwork.writers.charts.chart import Chart, ChartTheme
-from linkwork.writers.charts.pgfplots import pgfplots_picture
 
 __all__ = ["FORMATS", "check_picture", "render", "write"]
 
@@ -36,7 +35,7 @@ def write(
     path: str | Path,
     *,
     dpi: float = 200.0,
-    theme: Theme | ChartTheme = LIGHT,
+    theme: Theme = LIGHT,
 ) -> Path:
     """Write a scene, a chart or a sheet to a file; the suffix of ``path`` chooses the format.
 
@@ -60,22 +59,21 @@ def render(
     kind: str,
     *,
     dpi: float = 200.0,
-    theme: Theme | ChartTheme = LIGHT,
+    theme: Theme = LIGHT,
 ) -> bytes:
     """A scene, chart or sheet as the content of a file of one of :data:`FORMATS`.
 
     Raises
     ------
     InputError
-        If the format is unknown, a drawing has a theme of charts, or several drawings are to be
-        one TikZ picture.
+        If the format is unknown, or several drawings are to be one TikZ picture.
     """
     if kind not in FORMATS:
         raise InputError(f'there is no format "{kind}" (formats: {", ".join(FORMATS)})')
     if kind != _TIKZ:
         return matplotlib_writer.image(scene, kind, dpi=dpi, theme=theme)
-    if isinstance(scene, Chart):
-        return pgfplots_picture(scene, theme).encode()
-    if isinstance(scene, Sheet) or isinstance(theme, ChartTheme):
+    if isinstance(scene, Sheet):
         raise InputError("a TikZ picture shows one position or a chart: draw each position alone")
-    return tikz_picture(scene, theme).encode()
+    if isinstance(scene, Scene):
+        return tikz_picture(scene, theme).encode()
+    return scene.tikz(theme).encode()

@@ -130,11 +130,13 @@ def free_name(name: str, taken: set[str]) -> str:
 _LATEX = {
     "\\": r"\textbackslash{}", "{": r"\{", "}": r"\}", "$": r"\$", "&": r"\&", "#": r"\#",
     "%": r"\%", "_": r"\_", "^": r"\textasciicircum{}", "~": r"\textasciitilde{}",
-    "°": r"$^\circ$", "·": r"$\cdot$", "−": "$-$", "²": "$^2$", "³": "$^3$", "′": "$'$",
+    "°": r"$^\circ$", "·": r"$\cdot$", "−": "$-$", "⁻": "$^-$", "′": "$'$",
+    "ₓ": "$_x$", "ᵧ": "$_y$",
     "µ": r"$\mu$", "≤": r"$\leq$", "≥": r"$\geq$", "±": r"$\pm$", "×": r"$\times$", "→": r"$\to$",
     "∞": r"$\infty$", "|": r"$|$", "<": "$<$", ">": "$>$", "–": "--", "…": r"\dots{}",
     "∠": r"$\angle$", "₋": "$_-$", "‖": r"$\|$",
     **{digit: f"$_{k}$" for k, digit in enumerate("₀₁₂₃₄₅₆₇₈₉")},
+    **{digit: f"$^{k}$" for k, digit in enumerate("⁰¹²³⁴⁵⁶⁷⁸⁹")},
     **{letter: f"$\\{name}$" for letter, name in GREEK.items() if name not in ("omicron",)},
 }  # fmt: skip
 

@@ -427,7 +427,7 @@ class Motion:
         MissingPackageError
             If Matplotlib is not installed.
         """
-        return wings.use("writers.charts.matplotlib_plot").plot_motion(
+        return wings.use("writers.charts.plotting").plot_motion(
             self,
             *names,
             kind=kind,

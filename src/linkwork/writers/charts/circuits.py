@@ -1,35 +1,33 @@
-"""Chart of all circuits as closed curves of each quantity over the input."""
+"""Charts of all circuits as closed curves over the input, and of a front of designs."""
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
+from functools import partial
 
 import numpy as np
 
-from linkwork.circuits.results import Branch, Circuits
+from linkwork.circuits.results import Circuits
+from linkwork.core.drawing.pose import printed_name
 from linkwork.core.foundation.arrays import Array
 from linkwork.core.foundation.errors import InputError
 from linkwork.core.foundation.statuses import CircuitEnd
-from linkwork.core.results.motion import Motion
 from linkwork.core.results.quantity import Kind
-from linkwork.writers.charts.chart import (
-    Axis,
-    Chart,
-    Curve,
-    Mark,
-    Panel,
+from linkwork.writers.charts.axes import ChartAxes, round_ticks
+from linkwork.writers.charts.chart import Chart, Panel
+from linkwork.writers.charts.columns import usual_columns, with_unit
+from linkwork.writers.charts.lines import (
     Window,
-    axis_label,
-    finite_ends,
-    origin,
-    rounded,
-    turn_axis,
+    bounded_ends,
+    covering,
+    level_ends,
+    repeated,
 )
-from linkwork.writers.charts.columns import layered, usual_columns
 
 #: Maximum number of quantities shown by default.
 MOST_PANELS = 6
+_USUAL_COLUMNS, _MOST_COLUMNS = 3, 4
 
 
 def circuit_chart(circuits: Circuits, names: Sequence[str] = ()) -> Chart:
@@ -50,84 +48,13 @@ def circuit_chart(circuits: Circuits, names: Sequence[str] = ()) -> Chart:
     UnknownNameError
         If a quantity does not exist.
     """
-    if not len(circuits):
-        raise InputError(f'"{circuits.mechanism}" has no circuit to draw: {circuits.message}')
-    motions = [circuit.motion for circuit in circuits]
-    units = motions[0].units
-    turning = circuits.input_unit == units.angle.value
-    turn = units.angle.turn if turning else 0.0
+    shown = _quantities(circuits, names)
     count = len(circuits)
-    asked = [motions[0].series(name).quantity.name for name in names]
-    shown = tuple(dict.fromkeys(asked)) or usual_columns(motions[0])[:MOST_PANELS]
     return Chart(
         title=circuits.mechanism,
         caption=f"{count} circuit{'' if count == 1 else 's'}",
-        axis=Axis(
-            label=axis_label(circuits.input, circuits.input_unit),
-            turn=turn,
-            ends=(0.0, turn) if turning else None,
-            step=turn / 8,
-        ),
-        panels=tuple(_circuit_chart_panel(circuits, name, turn) for name in shown),
+        panels=tuple(_panel(circuits, name) for name in shown),
     )
-
-
-def _circuit_chart_panel(circuits: Circuits, name: str, x_turn: float) -> Panel:
-    """One quantity along all circuits; ``x_turn``: a full turn of the input, 0 for a length."""
-    first = circuits[0].motion
-    quantity = first.series(name).quantity
-    units = first.units
-    turn = units.angle.turn if quantity.kind is Kind.ANGLE else 0.0
-    ways: list[tuple[Motion, int, str, list[tuple[Array, Array]]]] = []
-    for tone, circuit in enumerate(circuits, start=1):
-        motion = circuit.motion
-        x, y = rounded(motion[circuits.input], x_turn), rounded(motion[name], turn)
-        of = np.array(motion.branch)
-        mine = [of == branch.name for branch in circuit.branches]
-        ways.append((motion, tone, circuit.name, [(x[rows], y[rows]) for rows in mine]))
-    low = origin([y for *_, lines in ways for _, y in lines], turn)
-    window = Window(x_turn=x_turn, y_turn=turn, low=low)
-    curves: list[Curve] = []
-    marks: list[Mark] = []
-    for motion, tone, circuit_name, lines in ways:
-        folded = [window.folded(x, y) for x, y in lines]
-        curves += [Curve(x=x, y=y, tone=tone, name=circuit_name) for x, y in folded]
-        marks += _circuit_chart_marks(motion, circuits.input, name, tone, window, folded)
-    axis = Axis(label=axis_label(name, units.of(quantity.kind)), turn=turn)
-    if turn:
-        axis = turn_axis(axis, [curve.y for curve in curves], low, units.angle)
-    elif any(circuit.end is CircuitEnd.RUNS_TO_INFINITY for circuit in circuits):
-        axis = replace(axis, ends=finite_ends(curves))
-    return Panel(axis=axis, curves=tuple(layered(curves)), marks=tuple(marks))
-
-
-def _circuit_chart_marks(
-    motion: Motion,
-    driver: str,
-    name: str,
-    tone: int,
-    window: Window,
-    lines: Iterable[tuple[Array, Array]],
-) -> list[Mark]:
-    """Dead points and change points on the curves of one quantity, at both edges if necessary."""
-    x, y = rounded(motion[driver], window.x_turn), rounded(motion[name], window.y_turn)
-    ends = np.concatenate([np.stack(line, axis=1) for line in lines])
-    near = window.tolerance(ends)
-    found: list[Mark] = []
-    for k in (k for k, kind in enumerate(motion.limit) if kind):
-        for place in window.shown_on(ends, float(x[k]), float(y[k])):
-            # a dead point ends two branches, but is marked once
-            if not any((np.abs(np.subtract(place, (m.x, m.y))) < near).all() for m in found):
-                found.append(Mark(x=place[0], y=place[1], tone=tone, kind=motion.limit[k]))
-    return found
-
-
-# ----------------------------------------------------------------------
-# Small multiples: one panel for every branch of every circuit.
-
-
-_USUAL_COLUMNS, _MOST_COLUMNS = 3, 4
-_STEPS = {1: 8, 2: 4, 3: 4}  # ticks per turn, by the number of columns
 
 
 def branch_chart(circuits: Circuits, names: Sequence[str] = ()) -> Chart:
@@ -147,7 +74,7 @@ def branch_chart(circuits: Circuits, names: Sequence[str] = ()) -> Chart:
         If a quantity does not exist.
     """
     every = circuit_chart(circuits, names)
-    shown = every.panels if names else every.panels[:1]
+    shown = _quantities(circuits, names)[: None if names else 1]
     branches = [branch for circuit in circuits for branch in circuit.branches]
     count = len(branches)
     if len(shown) > 1 and count > _MOST_COLUMNS:
@@ -156,19 +83,26 @@ def branch_chart(circuits: Circuits, names: Sequence[str] = ()) -> Chart:
             f"quantities: name one of {', '.join(names)}"
         )
     columns = count if len(shown) > 1 else _columns(count)
-    panels = [
-        _branch_chart_panel(panel, branch, k, titled=row == 0 or count > columns)
-        for row, panel in enumerate(shown)
-        for k, branch in enumerate(branches)
-    ]
+    titles = ["\n".join(filter(None, (b.name, b.configuration))) for b in branches]
     return replace(
         every,
         caption=f"{count} branch{'' if count == 1 else 'es'} in {every.caption}",
-        axis=_axis(every.axis, columns),
-        panels=tuple(panels),
+        panels=tuple(
+            _panel(circuits, name, k, "" if row and count == columns else title)
+            for row, name in enumerate(shown)
+            for k, title in enumerate(titles)
+        ),
         columns=columns,
-        legend=tuple(dict.fromkeys(mark.kind for panel in panels for mark in panel.marks)),
     )
+
+
+def _quantities(circuits: Circuits, names: Sequence[str]) -> tuple[str, ...]:
+    """The quantities to show, without duplicates."""
+    if not len(circuits):
+        raise InputError(f'"{circuits.mechanism}" has no circuit to draw: {circuits.message}')
+    motion = circuits[0].motion
+    named = dict.fromkeys(motion.series(name).quantity.name for name in names)
+    return tuple(named) or usual_columns(motion)[:MOST_PANELS]
 
 
 def _columns(count: int) -> int:
@@ -178,24 +112,52 @@ def _columns(count: int) -> int:
     return max(1, min(count, _USUAL_COLUMNS if count <= _USUAL_COLUMNS**2 else _MOST_COLUMNS))
 
 
-def _axis(axis: Axis, columns: int) -> Axis:
-    return replace(axis, step=axis.turn / _STEPS.get(columns, 2)) if axis.turn else axis
+def _panel(circuits: Circuits, name: str, front: int | None = None, title: str = "") -> Panel:
+    """One quantity along all circuits, the branch with the number ``front`` before all others."""
+    motion = circuits[0].motion
+    quantity = motion.series(name).quantity
+    label = with_unit(printed_name(name), motion.units.of(quantity.kind))
+    return Panel(label=label, draw=partial(_draw, circuits, name, label, front, title))
 
 
-def _branch_chart_panel(every: Panel, branch: Branch, k: int, *, titled: bool) -> Panel:
-    """The panel with its k-th curve in front and the others in grey."""
-    own = replace(every.curves[k], below=0)
-    others = [replace(c, quiet=True) for n, c in enumerate(every.curves) if n != k]
-    title = "\n".join(filter(None, (branch.name, branch.configuration))) if titled else ""
-    marks = tuple(mark for mark in every.marks if _ends(own, mark.x, mark.y))
-    return replace(every, curves=(*others, own), marks=marks, title=title)
-
-
-def _ends(curve: Curve, x: float, y: float) -> bool:
-    """Whether a point belongs to a curve."""
-    points = np.stack([curve.x, curve.y], axis=1)
-    size = np.maximum(np.nanmax(np.abs(points), axis=0), 1.0)
-    return bool((np.abs(points - (x, y)) < 1e-9 * size).all(axis=1).any())
+def _draw(
+    circuits: Circuits, name: str, label: str, front: int | None, title: str, axes: ChartAxes
+) -> None:
+    ax, motion = axes.ax, circuits[0].motion
+    unit = motion.units.angle
+    turning = circuits.input_unit == unit.value
+    turn = unit.turn if motion.series(name).quantity.kind is Kind.ANGLE else 0.0
+    tones: list[int] = []
+    lines: list[tuple[Array, Array]] = []
+    limits: list[Array] = []
+    for tone, circuit in enumerate(circuits, start=1):
+        for branch in circuit.branches:
+            rows = np.array(circuit.motion.branch) == branch.name
+            tones.append(tone)
+            lines.append((circuit.motion[circuits.input][rows], circuit.motion[name][rows]))
+            limits.append(np.array(circuit.motion.limit)[rows])
+    across = Window(turn=unit.turn if turning else 0.0, whole=True)
+    along = Window.around([y for _, y in lines], turn)
+    shown = [repeated(x, y, across, along) for x, y in lines]
+    below = covering(shown, tones) if front is None else [0] * len(lines)
+    for k, (tone, line) in enumerate(zip(tones, shown, strict=True)):
+        behind = front not in (None, k)
+        of = circuits[tone - 1].name
+        axes.curve(*line, of, tone, legend=front is None, below=below[k], quiet=behind)
+        for kind in dict.fromkeys(filter(None, () if behind else limits[k].tolist())):
+            axes.marks(*repeated(*lines[k], across, along, limits[k] == kind), kind, tone)
+    axes.labels(with_unit(printed_name(circuits.input), circuits.input_unit), label, title)
+    values = np.concatenate([y for _, y in shown])
+    ends = along.ends if along.whole else level_ends(values, turn or 1.0)
+    if not turn and any(c.end is CircuitEnd.RUNS_TO_INFINITY for c in circuits):
+        ends = bounded_ends(shown)
+    if ends is not None:
+        ax.set_ylim(*ends)
+    if turn:
+        round_ticks(ax.yaxis, unit)
+    if turning:
+        axes.show_input(0.0, unit.turn)
+        round_ticks(ax.xaxis, unit)
 
 
 # ----------------------------------------------------------------------
@@ -203,7 +165,7 @@ def _ends(curve: Curve, x: float, y: float) -> bool:
 
 
 _TEXTS = 24  # numbers of designs that are written
-_UP_RIGHT = (0.7, 0.7)
+_UP_RIGHT = 0.7 + 0.7j
 
 
 def front_chart(title: str, goals: Mapping[str, Sequence[float]], numbers: Sequence[int]) -> Chart:
@@ -217,51 +179,33 @@ def front_chart(title: str, goals: Mapping[str, Sequence[float]], numbers: Seque
     numbers : sequence of int
         The numbers of the designs.
     """
-    (name, first), *others = ((name, np.array(own)) for name, own in goals.items())
-    panels = tuple(
-        Panel(
-            axis=Axis(label=f"miss of {other}"),
-            curves=(_curve(first, own, stairs=len(others) == 1),),
-            marks=tuple(_front_chart_marks(first, own, numbers)),
-        )
-        for other, own in others
-    )
     count = len(numbers)
+    first, *others = goals
     return Chart(
         title=title,
         caption=f"front of {count} design{'' if count == 1 else 's'}: "
         "no other one is better in every goal",
-        axis=Axis(label=f"miss of {name}"),
-        panels=panels,
-        legend=(),
+        panels=tuple(
+            Panel(label=f"miss of {other}", draw=partial(_draw_front, goals, first, other, numbers))
+            for other in others
+        ),
     )
 
 
-def _curve(x: Array, y: Array, *, stairs: bool) -> Curve:
-    """Stairs through the designs, each of which is the best one until the next; or no line.
-
-    Pieces of two points stay straight, and those of one point are dots.
-    """
-    if stairs:
-        gap = np.full(len(x) - 1, np.nan)
-        along = np.stack([x[:-1], x[1:], gap, x[1:], x[1:], gap], axis=1)
-        across = np.stack([y[:-1], y[:-1], gap, y[:-1], y[1:], gap], axis=1)
-    else:
-        gap = np.full(len(x), np.nan)
-        along, across = np.stack([x, gap], axis=1), np.stack([y, gap], axis=1)
-    return Curve(x=along.ravel(), y=across.ravel(), tone=1, name="front", quiet=True)
-
-
-def _front_chart_marks(x: Array, y: Array, numbers: Sequence[int]) -> list[Mark]:
+def _draw_front(
+    goals: Mapping[str, Sequence[float]],
+    first: str,
+    other: str,
+    numbers: Sequence[int],
+    axes: ChartAxes,
+) -> None:
+    """Dots; of two goals with stairs through the designs, each the best one until the next."""
+    places = np.array(goals[first]) + 1j * np.array(goals[other])
+    if len(goals) == 2:
+        colour = axes.theme.rule
+        axes.ax.step(places.real, places.imag, where="post", color=colour, linewidth=1.0)
+    axes.stations(places, 1)
     every = -(-len(numbers) // _TEXTS)
-    return [
-        Mark(
-            x=float(x[k]),
-            y=float(y[k]),
-            tone=1,
-            kind="station",
-            text="" if k % every else str(number),
-            away=_UP_RIGHT,
-        )
-        for k, number in enumerate(numbers)
-    ]
+    for place, number in list(zip(places.tolist(), numbers, strict=True))[::every]:
+        axes.station_text(str(number), place, _UP_RIGHT)
+    axes.labels(f"miss of {first}", f"miss of {other}")

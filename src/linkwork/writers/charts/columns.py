@@ -2,21 +2,18 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 
 from linkwork.core.drawing.pose import printed_name
-from linkwork.core.foundation.arrays import Array, BoolArray
+from linkwork.core.foundation.arrays import Array
 from linkwork.core.foundation.errors import InputError
-from linkwork.core.foundation.names import find_spelling
-from linkwork.core.results.limit import LimitKind
+from linkwork.core.foundation.names import find_spelling, pretty
 from linkwork.core.results.listing.motion_listing import coordinates_off_ground
 from linkwork.core.results.motion import Motion
 from linkwork.core.results.quantities.definition import Asked, Group
 from linkwork.core.results.quantity import Kind, Rate
-from linkwork.writers.charts.chart import Curve, Mark, Pen, Rule, Scale, rate_label, size_label
 
 #: Name of the time in ``against``.
 TIME = "time"
@@ -24,11 +21,40 @@ TIME = "time"
 #: Text columns of a table.
 _TEXTS = ("status", "certified", "branch", "limit")
 
-#: Scale and style of evidence not drawn as lines over a logarithmic axis.
-_EVIDENCE: Mapping[str, tuple[Scale, Pen]] = {
-    "residual": (Scale.ROUNDING, Pen.DOTS),
-    "iterations": (Scale.COUNT, Pen.DOTS),
-}
+#: Scales of evidence that is scattered; other evidence is drawn as lines over a logarithmic axis.
+_SCATTERED = {"residual": "rounding", "iterations": "count"}
+
+# ----------------------------------------------------------------------
+# Labels of columns in figures: ``θ₁₃ [deg]``, ``ds₁₆/dθ₁₂ [mm/rad]``.
+
+
+def with_unit(text: str, unit: str) -> str:
+    """``ds₁₆/dθ₁₂ [mm/rad]``; without brackets if there is no unit."""
+    printed = unit.replace("^2", "²").replace("^3", "³").replace("^4", "⁴")
+    return f"{text} [{printed}]" if unit.replace("^2", "") not in ("", "1/1") else text
+
+
+def rate_label(name: str, rate: Rate, driver: str) -> str:
+    """A rate of a quantity: ``ds₁₆/dθ₁₂``, ``velocity of s₁₆``; ``driver`` is the input."""
+    if rate.by_time:
+        return f"{rate.value} of {printed_name(name)}"
+    power = "" if rate.order == 1 else "²"
+    return f"d{power}{_term(name)}/d{_term(driver)}{power}"
+
+
+def size_label(point: str, rate: Rate, driver: str) -> str:
+    """The magnitude of a point's rate: ``|velocity of B|``."""
+    return f"|{rate_label(point, rate, driver)}|"
+
+
+def _term(name: str) -> str:
+    """A name after the d of a derivative; words are separated by a space."""
+    stem = pretty(name).partition(".")[0].rstrip("0123456789'")
+    return printed_name(name) if len(stem) == 1 else f" {printed_name(name)}"
+
+
+# ----------------------------------------------------------------------
+# Columns.
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -52,8 +78,10 @@ class Column:
         For an angle that may jump: its derivative with respect to the input, in these units.
     size : float
         Typical size: differences below 1e-9 of it are rounding.
-    scale, pen
-        Scale of its axis and style of its curve.
+    scale : str
+        Scale of its axis, as in :func:`linkwork.writers.charts.axes.set_scale`.
+    dots : bool
+        Whether neighbouring rows have nothing to do with each other: no line joins them.
     """
 
     name: str
@@ -64,8 +92,8 @@ class Column:
     turn: float = 0.0
     slope: Array | None = None
     size: float = 1.0
-    scale: Scale = Scale.LINEAR
-    pen: Pen = Pen.LINE
+    scale: str = "linear"
+    dots: bool = False
 
     @property
     def rate(self) -> bool:
@@ -143,14 +171,19 @@ def column_of(motion: Motion, name: str) -> Column:
 
 def _evidence(motion: Motion, asked: Asked) -> Column:
     """A number about the positions found."""
-    scale, pen = _EVIDENCE.get(asked.name, (Scale.LOG, Pen.LINE))
     shown = motion.found
     if asked.name == "condition":  # infinite at dead points, up to rounding
         shown = shown & ~np.isin(motion.limit, ("dead point", "change point"))
     values = np.where(shown, motion[asked.name].astype(float), np.nan)
     label = asked.name.replace("_", " ")
     return Column(
-        name=asked.name, label=label, unit="", measure="", values=values, scale=scale, pen=pen
+        name=asked.name,
+        label=label,
+        unit="",
+        measure="",
+        values=values,
+        scale=_SCATTERED.get(asked.name, "log"),
+        dots=asked.name in _SCATTERED,
     )
 
 
@@ -214,132 +247,3 @@ def _speed_of(motion: Motion) -> str:
     """An example of a speed for this input."""
     unit = motion.input_units[lead_of(motion)]
     return "60 rpm" if unit == motion.units.angle.value else f"50 {unit}/s" if unit else "50"
-
-
-# ----------------------------------------------------------------------
-# Rows of a motion as lines, broken at missing positions, gaps and jumps of angles.
-
-
-_DEAD = LimitKind.DEAD_POINT.word
-_FURTHER = 1.5  # steps of the table: rows further apart are not neighbours
-_SINGULAR = (_DEAD, LimitKind.CHANGE_POINT.word, LimitKind.UNKNOWN.word)
-
-
-def breaks(motion: Motion, lead: Array, *columns: Column) -> BoolArray:
-    """Whether the line between neighbouring rows is interrupted, shape (N - 1,).
-
-    It is between rows on different branches, between rows whose inputs differ by more than the
-    table's step, and between two dead points without a row between them. An angle jumps if its
-    change differs by more than half a turn from that predicted by its derivative.
-
-    Parameters
-    ----------
-    lead : array (N,)
-        The leading input, in file units.
-    """
-    branch = np.array(motion.branch)
-    dead = np.array(motion.limit) == _DEAD
-    found: BoolArray = (branch[1:] != branch[:-1]) | (dead[1:] & dead[:-1])
-    steps = np.abs(np.diff(lead[motion.asked]))
-    if len(steps):
-        found |= np.abs(np.diff(lead)) > _FURTHER * steps.max()
-    for column in columns:
-        if column.turn and column.slope is not None:
-            found |= _jumps(column, column.slope, np.diff(lead))
-    return found
-
-
-def _jumps(column: Column, slope: Array, dx: Array) -> BoolArray:
-    dy = np.diff(column.values)
-    # the first finite one of both ends; none at a dead point
-    ahead, behind = slope[:-1], slope[1:]
-    steady = np.where(np.isfinite(ahead), ahead, behind)
-    expected = np.where(np.isfinite(steady), steady, 0.0) * dx
-    half = 0.5 * column.turn
-    jumps: BoolArray = (np.abs(dy) > half) & (np.abs(dy - expected) > half)
-    return jumps
-
-
-def broken(values: Array, where: BoolArray) -> Array:
-    """Values (N,) with NaN inserted between the rows marked in ``where`` (N - 1,)."""
-    return np.insert(values, np.flatnonzero(where) + 1, np.nan)
-
-
-def runs(x: Array, y: Array) -> Iterator[tuple[Array, Array]]:
-    """The pieces of a line between NaN values."""
-    edges = np.flatnonzero(np.diff(np.concatenate(([0], np.isfinite(x + y).astype(int), [0]))))
-    for start, stop in zip(edges[::2], edges[1::2], strict=True):
-        yield x[start:stop], y[start:stop]
-
-
-def limit_marks(
-    motion: Motion, across: Column, column: Column, tone: int
-) -> tuple[list[Mark], list[Rule]]:
-    """Dead points, change points and extremes of a column: marks on it, or rules if it has no
-    value.
-
-    Derivatives and conditions have no value at a dead point; a rule shows the input.
-    """
-    marks: list[Mark] = []
-    rules: list[Rule] = []
-    for k, kind in enumerate(motion.limit):
-        x, y = float(across.values[k]), float(column.values[k])
-        word, _, of = kind.partition(" of ")
-        if not kind or (of and of != column.name) or not np.isfinite(x):
-            continue
-        if np.isfinite(y):
-            marks.append(Mark(x=x, y=y, tone=tone, kind=word))
-        elif word in _SINGULAR:
-            rules.append(Rule(along="x", at=x, kind=word))
-    return marks, rules
-
-
-# ----------------------------------------------------------------------
-# Overlapping curves: the lower one is drawn wider, so that both are visible.
-
-
-_NEAR = 0.004  # of the panel's sides: nearer curves cover each other
-_LOOKED_AT = 100  # points of a curve checked for cover by another one
-_HIDDEN = 0.4  # a curve with a larger covered share is drawn wider
-
-
-def layered(curves: Sequence[Curve]) -> list[Curve]:
-    """The curves, each with the number of later tones that cover much of it."""
-    points = [np.stack([curve.x, curve.y], axis=1) for curve in curves]
-    every = np.concatenate(points)
-    if not np.isfinite(every).all(axis=1).any():
-        return list(curves)
-    size = np.nanmax(every, axis=0) - np.nanmin(every, axis=0)
-    scaled = [line / np.where(size > 0.0, size, 1.0) for line in points]
-    layered = []
-    for k, curve in enumerate(curves):
-        hiding = {
-            other.tone
-            for other, line in zip(curves, scaled, strict=True)
-            if other.tone > curve.tone and _hidden_share(scaled[k], line) > _HIDDEN
-        }
-        layered.append(replace(curve, below=len(hiding)))
-    return layered
-
-
-def _hidden_share(line: Array, other: Array) -> float:
-    """The share of points of a line (K, 2) on another line (M, 2)."""
-    points = line[np.isfinite(line).all(axis=1)]
-    points = points[:: max(1, len(points) // _LOOKED_AT)]
-    start, step = other[:-1], np.diff(other, axis=0)
-    ends = np.sort(np.stack([other[:-1, 0], other[1:, 0]]), axis=0)
-    hidden = 0
-    for point in points:
-        # a curve of many turns has few sides near a point
-        close = (ends[0] < point[0] + _NEAR) & (point[0] - _NEAR < ends[1])
-        hidden += bool((_distances(point, start[close], step[close]) < _NEAR).any())
-    return hidden / max(len(points), 1)
-
-
-def _distances(point: Array, start: Array, step: Array) -> Array:
-    """The distance of a point from sides (M, 2), (M,)."""
-    offset = point - start
-    squared = np.maximum((step**2).sum(axis=1), 1e-30)
-    share = np.clip((offset * step).sum(axis=1) / squared, 0.0, 1.0)
-    distances: Array = np.linalg.norm(offset - share[:, None] * step, axis=1)
-    return distances

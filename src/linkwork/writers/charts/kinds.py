@@ -1,10 +1,11 @@
-"""Columns of a motion over its input, over time, or over each other."""
+"""Columns of a motion over its input, over time, over each other, or around a pole."""
 
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
+from functools import partial
 from itertools import chain, pairwise
 
 import numpy as np
@@ -19,46 +20,33 @@ from linkwork.core.mechanism.skeleton import Dyad, dyads_of
 from linkwork.core.results.motion import Motion
 from linkwork.core.results.quantities.rows import RECOMMENDED, TRANSMISSION_ANGLE
 from linkwork.core.results.quantity import Kind, Rate
-from linkwork.writers.charts.chart import (
-    Axis,
-    Band,
-    Chart,
-    Curve,
-    Mark,
-    Panel,
-    Pen,
-    Rule,
-    Scale,
-    Shape,
-    Window,
-    across_step,
-    angle_ends,
-    finite_ends,
-    level_ends,
-    origin,
-    round_step,
-    rounded,
-    turn_axis,
-    with_unit,
-)
+from linkwork.writers.charts.axes import ChartAxes, pi_text, round_ticks, set_scale
+from linkwork.writers.charts.chart import Chart, Panel
 from linkwork.writers.charts.columns import (
+    TIME,
     Column,
     abscissa_of,
+    column_of,
+    lead_of,
+    usual_columns,
+    with_unit,
+)
+from linkwork.writers.charts.lines import (
+    SINGULAR,
+    Window,
+    bounded_ends,
     breaks,
     broken,
-    column_of,
-    layered,
-    lead_of,
-    limit_marks,
-    runs,
-    usual_columns,
+    covering,
+    level_ends,
+    limits_on,
+    repeated,
 )
 
 _MOST_CURVES = 6  # curves in a panel: the number of colours
 _SPANS = 20.0  # largest ratio of the ranges of curves in a panel: flatter ones show nothing
 _BESIDE = 15.0  # em: the longest axis label that names all curves of a panel
 _MOST_VALUES = (2.0, 98.0)  # percentiles
-_BEYOND = 4.0  # beyond this multiple of its usual range a curve runs to infinity at a dead point
 
 
 def motion_chart(
@@ -87,16 +75,11 @@ def motion_chart(
     check_found(motion)
     across = abscissa_of(motion, against)
     columns = columns_of(motion, names or [*usual_columns(motion), *motion.outputs])
-    panels = shared_panels(motion, across, columns, wrapped=wrapped)
-    named = [curve.name for p in panels if len(p.curves) > 1 for curve in p.curves]
-    kinds = [mark.kind for p in panels for mark in p.marks]
-    kinds += [rule.kind for p in panels for rule in p.rules]
+    draw = partial(draw_graph, motion, across, wrapped=wrapped, own=not against)
     return Chart(
         title=motion.mechanism,
         caption=reached_caption(motion),
-        axis=across_axis(motion, across, own=not against),
-        panels=tuple(panels),
-        legend=tuple(dict.fromkeys([*named, *kinds])),
+        panels=shared_panels(columns, draw),
     )
 
 
@@ -113,13 +96,19 @@ def columns_of(motion: Motion, names: Sequence[str]) -> list[Column]:
 
 
 def shared_panels(
-    motion: Motion, across: Column, columns: Sequence[Column], *, wrapped: bool = False
-) -> list[Panel]:
-    """Panels of columns over one abscissa; columns of one unit and similar range share a panel."""
-    groups = _grouped(columns)
-    order = [column.name for group in groups for column in group]
-    tones = {name: tone for tone, name in enumerate(order, start=1)}
-    return [_panel(motion, across, group, tones, wrapped) for group in groups]
+    columns: Sequence[Column], draw: Callable[..., None], ratio: float = 0.75
+) -> tuple[Panel, ...]:
+    """Panels of columns of one unit and similar range.
+
+    ``draw`` is called with the columns of a panel, the number of the first one's colour, and the
+    axes.
+    """
+    panels: list[Panel] = []
+    tone = 1
+    for group in _grouped(columns):
+        panels.append(Panel(label=_label(group), draw=partial(draw, group, tone), ratio=ratio))
+        tone += len(group)
+    return tuple(panels)
 
 
 def _grouped(columns: Sequence[Column]) -> list[list[Column]]:
@@ -159,95 +148,113 @@ def _span(column: Column) -> float:
     return float(high - low)
 
 
-def _panel(
-    motion: Motion, across: Column, group: list[Column], tones: dict[str, int], wrapped: bool
-) -> Panel:
-    curves: list[Curve] = []
-    marks: list[Mark] = []
-    rules: list[Rule] = []
-    for column in group:
-        tone = tones[column.name]
-        where = breaks(motion, motion.inputs[lead_of(motion)], across, column)
-        x, y = broken(across.values, where), broken(column.values, where)
-        pen = Pen.DOTS if Pen.DOTS in (across.pen, column.pen) else Pen.LINE
-        curves.append(Curve(x=x, y=y, tone=tone, name=column.label, pen=pen))
-        own, gaps = limit_marks(motion, across, column, tone)
-        marks, rules = marks + own, rules + gaps
-    axis = _value_axis(motion, group, curves)
-    if wrapped and axis.turn and any(np.isfinite(curve.y).any() for curve in curves):
-        axis, curves, marks = _wrapped(motion, axis, curves, marks)
-    drawn = tuple(layered(curves)) if len(curves) > 1 else tuple(curves)
-    unique = tuple(dict.fromkeys(rules))
-    return Panel(axis=axis, curves=drawn, marks=tuple(marks), rules=unique)
-
-
-def _value_axis(motion: Motion, group: Sequence[Column], curves: Sequence[Curve]) -> Axis:
-    """Label and range of the axis of columns that share a panel."""
+def _label(group: Sequence[Column]) -> str:
+    """The names of columns, or what they measure if there are too many."""
     first = group[0]
     label = with_unit(", ".join(column.label for column in group), first.unit)
     if len(group) > 1 and text_width(label, 1.0) > _BESIDE:
         label = with_unit(first.measure, first.unit)
-    axis = Axis(label=label, turn=first.turn, scale=first.scale)
-    values = np.concatenate([curve.y for curve in curves])
-    if not np.isfinite(values).any() or first.scale is not Scale.LINEAR:
-        return axis
-    if first.turn:
-        ends, step = angle_ends(values, motion.units.angle)
-        return replace(axis, ends=ends, step=step)
+    return label
+
+
+def draw_graph(
+    motion: Motion,
+    across: Column,
+    group: Sequence[Column],
+    tone: int,
+    axes: ChartAxes,
+    *,
+    own: bool,
+    **options: bool,
+) -> None:
+    """Columns over an abscissa; ``own``: it is the input, shown over its requested range.
+
+    ``options`` are those of :func:`draw_columns`.
+    """
+    first, unit = group[0], motion.units.angle
+    lines = draw_columns(motion, across, group, tone, axes, **options)
+    set_scale(axes, "x", across.scale)
+    set_scale(axes, "y", first.scale)
+    axes.labels(with_unit(across.label, across.unit), _label(group))
+    low, high = np.nanmin(across.values), np.nanmax(across.values)
+    if (own or across.measure == TIME) and low < high:
+        axes.show_input(low, high)
+    ends = _ends(motion, group, lines)
+    if ends is not None:
+        axes.ax.set_ylim(*ends)
+    for axis, column in ((axes.ax.xaxis, across), (axes.ax.yaxis, first)):
+        if column.turn:
+            round_ticks(axis, unit)
+
+
+def _ends(
+    motion: Motion, group: Sequence[Column], lines: Sequence[tuple[Array, Array]]
+) -> tuple[float, float] | None:
+    """The range of constant, or of unbounded columns; ``None`` for all others."""
+    values = np.concatenate([y for _, y in lines])
+    if group[0].scale != "linear" or not np.isfinite(values).any():
+        return None
     level = level_ends(values, max(column.size for column in group))
-    if level is not None:
-        return replace(axis, ends=level)
     singular = any(kind in ("dead point", "change point") for kind in motion.limit)
-    if singular and any(column.rate for column in group):
-        most = finite_ends(curves)
-        reach = float(np.nanmax(values) - np.nanmin(values))
-        if most is not None and reach > _BEYOND * (most[1] - most[0]):
-            return replace(axis, ends=most)
-    return axis
+    if level is None and singular and any(column.rate for column in group):
+        return bounded_ends(lines)
+    return level
 
 
-def _wrapped(
-    motion: Motion, axis: Axis, curves: Sequence[Curve], marks: Sequence[Mark]
-) -> tuple[Axis, list[Curve], list[Mark]]:
-    """The panel over one turn, chosen to cut the fewest lines."""
-    turn = axis.turn
-    pieces = [list(runs(curve.x, rounded(curve.y, turn))) for curve in curves]
-    low = origin([y for lines in pieces for _, y in lines], turn)
-    window = Window(x_turn=0.0, y_turn=turn, low=low)
-    folded = []
-    for curve, lines in zip(curves, pieces, strict=True):
-        x, y = _joined([window.folded(x, y) for x, y in lines])
-        folded.append(replace(curve, x=x, y=y))
-    ends = np.concatenate([np.stack([curve.x, curve.y], axis=1) for curve in folded])
-    placed = [
-        replace(mark, x=x, y=y)
-        for mark in marks
-        for x, y in window.shown_on(ends, mark.x, float(rounded(np.array(mark.y), turn)))
-    ]
-    return turn_axis(axis, [c.y for c in folded], low, motion.units.angle), folded, placed
+def draw_columns(
+    motion: Motion,
+    across: Column,
+    group: Sequence[Column],
+    tone: int,
+    axes: ChartAxes,
+    *,
+    wrapped: bool = False,
+    legend: bool = False,
+    factor: float = 1.0,
+) -> list[tuple[Array, Array]]:
+    """The curves of columns with their limits; returns the lines.
 
-
-def _joined(pieces: Sequence[tuple[Array, Array]]) -> tuple[Array, Array]:
-    """Pieces of a line concatenated with NaN between them."""
-    gap = (np.array([np.nan]), np.array([np.nan]))
-    parts = [part for piece in pieces for part in (gap, piece)][1:] or [gap]
-    return np.concatenate([x for x, _ in parts]), np.concatenate([y for _, y in parts])
-
-
-def across_axis(motion: Motion, across: Column, *, own: bool) -> Axis:
-    """The common axis of all panels; an input is shown over its requested range."""
-    axis = Axis(label=with_unit(across.label, across.unit), turn=across.turn, scale=across.scale)
-    values = across.values[np.isfinite(across.values)]
-    low, high = float(values.min()), float(values.max())
-    if high <= low:
-        return axis
-    step = across_step(high - low, motion.units.angle) if across.turn else 0.0
-    if own or across.measure == "time":
-        return replace(axis, ends=(low, high), step=step)
-    if across.turn:
-        ends, step = angle_ends(values, motion.units.angle)
-        return replace(axis, ends=ends, step=step)
-    return axis
+    Parameters
+    ----------
+    tone : int
+        Colour of the first one.
+    wrapped : bool
+        Reduce angles to one turn.
+    legend : bool
+        Name a single curve in the legend too.
+    factor : float
+        Unit of the abscissa on the axes.
+    """
+    lead = motion.inputs[lead_of(motion)]
+    lines: list[tuple[Array, Array]] = []
+    for column in group:
+        where = breaks(motion, lead, across, column)
+        lines.append((broken(across.values, where) * factor, broken(column.values, where)))
+    window = Window.around([y for _, y in lines], group[0].turn if wrapped else 0.0)
+    polar = axes.ax.name == "polar"
+    smooth = not polar and across.scale == group[0].scale == "linear"
+    below = covering(lines, range(len(lines))) if len(lines) > 1 else [0]
+    for k, (column, line) in enumerate(zip(group, lines, strict=True)):
+        axes.curve(
+            *repeated(*line, Window(), window),
+            column.label,
+            tone + k,
+            legend=legend or len(group) > 1,
+            below=below[k],
+            dots=across.dots or column.dots,
+            smooth=smooth,
+        )
+        for kind, rows in limits_on(motion, column).items():
+            x, valued = across.values * factor, np.isfinite(column.values)
+            if (rows & valued).any():
+                places = repeated(x, column.values, Window(), window, rows & valued)
+                axes.marks(*places, kind, tone + k)
+            if kind in SINGULAR and not polar:
+                for at in x[rows & ~valued & np.isfinite(x)].tolist():
+                    axes.limit_rule(at, kind)
+    if window.whole:
+        axes.ax.set_ylim(*window.ends)
+    return lines
 
 
 # ----------------------------------------------------------------------
@@ -255,7 +262,7 @@ def across_axis(motion: Motion, across: Column, *, own: bool) -> Axis:
 
 
 _AROUND = 12  # rays per turn
-_RINGS = 4  # approximate number
+_RADII_AT = 15.0  # degrees: the ray with the labels of radii
 
 
 def polar_chart(motion: Motion, names: Sequence[str] = (), *, against: str = "") -> Chart:
@@ -284,16 +291,13 @@ def polar_chart(motion: Motion, names: Sequence[str] = (), *, against: str = "")
             f"against= (--against){_an_angle(motion)}"
         )
     columns = columns_of(motion, names or _usual(motion))
-    panels = [_round(motion, panel) for panel in shared_panels(motion, across, columns)]
-    named = [curve.name for panel in panels if len(panel.curves) > 1 for curve in panel.curves]
-    kinds = [mark.kind for panel in panels for mark in panel.marks]
+    panels = shared_panels(columns, partial(_draw_polar, motion, across), ratio=1.0)
     return Chart(
         title=motion.mechanism,
         caption=f"over {with_unit(across.label, across.unit)}, {reached_caption(motion)}",
-        axis=Axis(label=across.label, turn=across.turn, step=across.turn / _AROUND),
-        panels=tuple(panels),
+        panels=panels,
         columns=min(len(panels), 2),
-        legend=tuple(dict.fromkeys([*named, *kinds])),
+        projection="polar",
     )
 
 
@@ -311,21 +315,32 @@ def _an_angle(motion: Motion) -> str:
     return f', as in "{angles[0]}"' if angles else ""
 
 
-def _round(motion: Motion, panel: Panel) -> Panel:
-    """A polar panel; radii start at zero, or below it if some are negative."""
-    axis = panel.axis
-    values = np.concatenate([curve.y for curve in panel.curves])
-    low, high = axis.ends or (float(np.nanmin(values)), float(np.nanmax(values)))
-    low, high = min(low, 0.0), max(high, 0.0)
-    if axis.turn:
-        ends, step = angle_ends(np.append(values, 0.0), motion.units.angle)
-        axis = replace(axis, ends=ends, step=step)
-    elif axis.scale is Scale.LINEAR and high > low:
-        step = round_step((high - low) / _RINGS)
-        ends = (math.floor(low / step) * step, math.ceil(high / step) * step)
-        axis = replace(axis, ends=ends, step=step)
-    zero = (Rule(along="y", at=0.0),) if low < 0.0 else ()
-    return replace(panel, shape=Shape.POLAR, axis=axis, title=axis.label, rules=zero)
+def _draw_polar(
+    motion: Motion, across: Column, group: Sequence[Column], tone: int, axes: ChartAxes
+) -> None:
+    """Radii start at zero, or below it if some are negative: then a circle marks zero."""
+    ax, unit = axes.ax, motion.units.angle
+    lines = draw_columns(motion, across, group, tone, axes, factor=math.tau / across.turn)
+    set_scale(axes, "y", group[0].scale)
+    axes.labels("", "", _label(group))
+    values = np.concatenate([y for _, y in lines])
+    level = level_ends(values, max(column.size for column in group))
+    low, high = level or (float(np.nanmin(values)), float(np.nanmax(values)))
+    if group[0].scale == "linear":
+        ax.set_ylim(1.05 * min(low, 0.0), 1.05 * max(high, 0.0))
+        round_ticks(ax.yaxis, unit if group[0].turn else None)
+    if low < 0.0:
+        around = np.linspace(0.0, math.tau, 181)
+        zero = np.zeros_like(around)
+        ax.plot(around, zero, color=axes.theme.rule, linewidth=1.4, zorder=1.5, gid="zero")
+    rays = [math.tau * k / _AROUND for k in range(_AROUND)]
+    degrees = unit is AngleUnit.DEGREE
+    ax.set_xticks(rays, [f"{math.degrees(r):.0f}°" if degrees else pi_text(r) for r in rays])
+    ax.set_rlabel_position(_RADII_AT)  # type: ignore[attr-defined]  # polar axes only
+    for label in ax.get_yticklabels():
+        label.set_bbox(
+            {"facecolor": axes.theme.background, "alpha": 0.75, "edgecolor": "none", "pad": 0.6}
+        )
 
 
 # ----------------------------------------------------------------------
@@ -360,40 +375,35 @@ def transmission_chart(motion: Motion, names: Sequence[str] = (), *, against: st
             'add it to [outputs], as in mu = "rocker - coupler", and name it'
         )
     columns = [_column(motion, pins, name) for name in names or pins]
-    across = abscissa_of(motion, against)
-    axis, band = _axis(motion), _band(motion)
-    panels = [
-        replace(panel, axis=axis, bands=(band,)) for panel in shared_panels(motion, across, columns)
-    ]
-    kinds = [mark.kind for panel in panels for mark in panel.marks]
-    legend = dict.fromkeys([*(column.label for column in columns), *kinds, band.name])
+    draw = partial(_draw_transmission, motion, abscissa_of(motion, against), own=not against)
     return Chart(
         title=motion.mechanism,
         caption=reached_caption(motion),
-        axis=across_axis(motion, across, own=not against),
-        panels=tuple(panels),
-        legend=tuple(legend),
+        panels=shared_panels(columns, draw),
     )
 
 
-def _axis(motion: Motion) -> Axis:
-    """From 0 to half a turn, with ticks at the ends of the band."""
+def _draw_transmission(
+    motion: Motion,
+    across: Column,
+    group: Sequence[Column],
+    tone: int,
+    axes: ChartAxes,
+    *,
+    own: bool,
+) -> None:
+    """From 0 to half a turn, with the recommended band and ticks at its ends."""
     unit = motion.units.angle
-    return Axis(
-        label=with_unit("transmission angle", unit.value),
-        turn=unit.turn,
-        ends=(0.0, math.pi / unit.radians),
-        ticks=tuple(tick / unit.radians for tick in _TICKS),
-    )
-
-
-def _band(motion: Motion) -> Band:
-    unit = motion.units.angle
+    draw_graph(motion, across, group, tone, axes, own=own, legend=True)
     low, high = (bound / unit.radians for bound in RECOMMENDED)
-    told = ("2π/9", "7π/9 rad")
-    if unit is AngleUnit.DEGREE:
-        told = (f"{low:.0f}°", f"{high:.0f}°")
-    return Band(low=low, high=high, name=f"recommended: {told[0]} to {told[1]}")
+    named = f"{low:.0f}° to {high:.0f}°" if unit is AngleUnit.DEGREE else "2π/9 to 7π/9 rad"
+    axes.band(low, high, f"recommended: {named}")
+    axes.ax.set_ylabel(with_unit("transmission angle", unit.value))
+    axes.ax.set_ylim(0.0, unit.turn / 2)
+    ticks = [tick / unit.radians for tick in _TICKS]
+    axes.ax.set_yticks(
+        ticks, None if unit is AngleUnit.DEGREE else [pi_text(tick) for tick in _TICKS]
+    )
 
 
 def _column(motion: Motion, pins: Mapping[str, Dyad], name: str) -> Column:

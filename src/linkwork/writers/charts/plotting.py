@@ -1,20 +1,37 @@
-"""Selection of the chart for a kind of plot."""
+"""The chart of a kind of plot, and plots for notebooks and scripts.
+
+``plot_motion`` and ``plot_circuits`` implement ``motion.plot`` and ``circuits.plot``. New figures
+belong to pyplot, so that notebooks and ``matplotlib.pyplot.show`` display them.
+"""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
 from enum import Enum
+from typing import Any
 
 from linkwork.circuits.results import Circuits
+from linkwork.core.drawing.matplotlib_settings import house_settings
+from linkwork.core.drawing.scene import THEMES, theme_named
 from linkwork.core.foundation.errors import InputError, UnknownNameError, choices
 from linkwork.core.results.motion import Motion
 from linkwork.core.results.quantities.rows import TRANSMISSION_ANGLE
+from linkwork.writers.charts.axes import chart_theme
 from linkwork.writers.charts.chart import Chart
 from linkwork.writers.charts.circuits import branch_chart, circuit_chart
 from linkwork.writers.charts.kinds import motion_chart, polar_chart, transmission_chart
-from linkwork.writers.charts.plane_chart import hodograph_chart, path_chart
+from linkwork.writers.charts.plane import hodograph_chart, path_chart
 
-__all__ = ["CIRCUIT_KINDS", "MOTION_KINDS", "PlotKind", "circuits_plot", "motion_plot"]
+__all__ = [
+    "CIRCUIT_KINDS",
+    "MOTION_KINDS",
+    "PlotKind",
+    "circuits_plot",
+    "motion_plot",
+    "plot_circuits",
+    "plot_motion",
+]
 
 
 class PlotKind(Enum):
@@ -107,3 +124,46 @@ def _kind(kind: str, known: Sequence[PlotKind], what: str, elsewhere: str) -> Pl
         raise InputError(f'there is no plot {what} of kind "{kind}": use {elsewhere}')
     options = choices("kinds", [which.value for which in known], kind)
     raise UnknownNameError(f'there is no plot {what} of kind "{kind}" {options}')
+
+
+def plot_motion(
+    motion: Motion,
+    *names: str,
+    kind: str = PlotKind.CURVES.value,
+    against: str = "",
+    wrapped: bool = False,
+    ax: Any = None,
+    theme: str = "light",
+    title: str | None = None,
+) -> Any:
+    """Plot a motion; see :meth:`linkwork.core.results.motion.Motion.plot`."""
+    chart = motion_plot(motion, names, kind=kind, against=against, wrapped=wrapped)
+    return _plot(chart, ax, theme, title)
+
+
+def plot_circuits(
+    circuits: Circuits,
+    *names: str,
+    kind: str = PlotKind.CIRCUITS.value,
+    ax: Any = None,
+    theme: str = "light",
+    title: str | None = None,
+) -> Any:
+    """Plot circuits; see :meth:`linkwork.circuits.results.Circuits.plot`."""
+    return _plot(circuits_plot(circuits, names, kind=kind), ax, theme, title)
+
+
+def _plot(chart: Chart, ax: Any, theme: str, title: str | None) -> Any:
+    """Draw a chart into a new figure or into existing axes; returns one axes, or a tuple."""
+    drawings = theme_named(theme, THEMES)
+    if title is not None:
+        chart = replace(chart, title=title, caption=chart.caption if title else "")
+    if ax is None:
+        with house_settings():
+            from matplotlib import pyplot
+
+            drawn = chart.draw_on(pyplot.figure(), chart_theme(drawings))
+    else:
+        drawn = [ax] if hasattr(ax, "plot") else list(getattr(ax, "flat", ax))
+        chart.draw_in(drawn, chart_theme(drawings))
+    return drawn[0] if len(drawn) == 1 else tuple(drawn)

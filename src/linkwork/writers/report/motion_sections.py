@@ -38,7 +38,7 @@ from linkwork.core.results.quantity import Kind
 from linkwork.design.listing import contribution_columns, tolerance_fields
 from linkwork.design.tolerance_results import SensitivityStatus
 from linkwork.forces.listing import finite_forces, force_fields, force_status_fields
-from linkwork.writers.charts.chart import Chart, Shape
+from linkwork.writers.charts.chart import Chart
 from linkwork.writers.charts.circuits import circuit_chart
 from linkwork.writers.charts.plotting import motion_plot
 from linkwork.writers.report.document import Block, Facts, Figure, Note, Paragraph, shown_name
@@ -275,7 +275,7 @@ def figures_of(chart: Chart, caption: str) -> Iterator[Figure]:
     plain = replace(chart, title="", caption="")
     if not chart.panels:
         return
-    if chart.panels[0].shape is not Shape.GRAPH or len(chart.panels) <= _PANELS:
+    if chart.projection != "graph" or len(chart.panels) <= _PANELS:
         yield Figure(caption=caption, picture=plain)
         return
     count = math.ceil(len(chart.panels) / _PANELS)

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
+from functools import partial
 
 import numpy as np
 
@@ -13,28 +14,17 @@ from linkwork.core.foundation.errors import InputError, UnknownNameError, choice
 from linkwork.core.foundation.names import find_spelling
 from linkwork.core.results.motion import Motion
 from linkwork.core.results.quantity import Kind, Rate
-from linkwork.writers.charts.chart import (
-    Axis,
-    Chart,
-    Curve,
-    Mark,
-    Panel,
-    Rule,
-    Shape,
-    across_step,
-    rate_label,
-    round_step,
-    with_unit,
-)
-from linkwork.writers.charts.columns import abscissa_of, breaks, broken, lead_of
+from linkwork.writers.charts.axes import ChartAxes, tick_step
+from linkwork.writers.charts.chart import Chart, Panel
+from linkwork.writers.charts.columns import abscissa_of, lead_of, rate_label, with_unit
 from linkwork.writers.charts.kinds import check_found
+from linkwork.writers.charts.lines import breaks, broken
 
-__all__ = ["hodograph_chart", "path_chart"]
-
-_NO_AXIS = Axis(label="")
 _APART = 0.09  # of the larger side: minimum distance of the texts of stations
-_HIDDEN = 1e-3  # of the larger side: nearer dots cover each other
-_STATIONS = 8  # approximate number for an input that is not an angle
+_STATIONS = 9  # the largest number of stations, for angles up to a turn
+_MARGIN = 0.12  # of the range of the paths, for the texts of stations
+_TICKS = 6  # the largest number on a side
+_FLATTEST, _TALLEST = 0.4, 1.15  # height-to-width ratio of a panel
 _USUAL = 80  # percentile of the values used as reference
 _BEYOND, _SHOWN = 4.0, 2.0  # multiples of the reference: unbounded curves, and their shown range
 
@@ -57,11 +47,8 @@ def path_chart(motion: Motion, points: Sequence[str] = ()) -> Chart:
     check_found(motion)
     names = _points(motion, points)
     paths = {name: motion.trace(name) for name in names}
-    unit = motion.units.length
-    panel = _plane(
-        motion, paths, (with_unit("x", unit), with_unit("y", unit)), title="", pole=False
-    )
-    return _chart(motion, [panel], names)
+    labels = with_unit("x", motion.units.length), with_unit("y", motion.units.length)
+    return _chart(motion, [_panel(motion, paths, labels)], names)
 
 
 def hodograph_chart(motion: Motion, points: Sequence[str] = ()) -> Chart:
@@ -89,10 +76,8 @@ def hodograph_chart(motion: Motion, points: Sequence[str] = ()) -> Chart:
     for rate in rates:
         paths = {name: motion.trace(f"{name}.{rate.value}") for name in names}
         unit = rate.unit(Kind.LENGTH, motion.units, motion.derivative_unit)
-        sides = [_component(motion, rate, axis) for axis in "xy"]
-        labels = (with_unit(sides[0], unit), with_unit(sides[1], unit))
-        title = _title(motion, rate, names)
-        panels.append(_plane(motion, paths, labels, title=title, pole=True))
+        x, y = (with_unit(_component(motion, rate, axis), unit) for axis in "xy")
+        panels.append(_panel(motion, paths, (x, y), _title(motion, rate, names), pole=True))
     return _chart(motion, panels, names)
 
 
@@ -129,128 +114,114 @@ def _title(motion: Motion, rate: Rate, names: Sequence[str]) -> str:
 
 
 def _chart(motion: Motion, panels: Sequence[Panel], names: Sequence[str]) -> Chart:
-    lead = lead_of(motion)
-    told = printed_name(lead)
+    lead = printed_name(lead_of(motion))
     where = reached_caption(motion)
-    caption = where if told in where else f"{told} {where}"
-    several = [printed_name(name) for name in names] if len(names) > 1 else []
-    kinds = [mark.kind for panel in panels for mark in panel.marks if mark.kind != "station"]
-    if len(panels) == 1 and not several:
+    caption = where if lead in where else f"{lead} {where}"
+    if len(panels) == len(names) == 1:
         caption = f"path of {printed_name(names[0])}, {caption}"
     return Chart(
         title=motion.mechanism,
         caption=caption,
-        axis=_NO_AXIS,
         panels=tuple(panels),
         columns=len(panels),
-        legend=tuple(dict.fromkeys([*several, *kinds])),
+        projection="plane",
     )
 
 
-def _plane(
+def _panel(
     motion: Motion,
-    paths: dict[str, ComplexArray],
+    paths: Mapping[str, ComplexArray],
     labels: tuple[str, str],
+    title: str = "",
     *,
-    title: str,
-    pole: bool,
+    pole: bool = False,
 ) -> Panel:
-    lead = motion.inputs[lead_of(motion)]
-    where = breaks(motion, lead)
-    curves = tuple(
-        Curve(x=broken(z.real, where), y=broken(z.imag, where), tone=tone, name=printed_name(name))
-        for tone, (name, z) in enumerate(paths.items(), start=1)
-    )
-    room = _room(motion, list(paths.values()), pole)
-    told: list[complex] = []
-    marks = [
-        mark
-        for tone, path in enumerate(paths.values(), start=1)
-        for mark in (*room.limits(motion, path, tone), *room.stations(motion, path, tone, told))
-    ]
-    if pole:
-        marks.append(Mark(x=0.0, y=0.0, tone=0, kind="pole"))
-    rules = (Rule(along="x", at=0.0), Rule(along="y", at=0.0)) if pole else ()
-    x_ends, y_ends = room.ends
+    view = _View.of(motion, [*paths.values(), np.zeros(int(pole), complex)])
     return Panel(
-        axis=Axis(label=labels[1], ends=y_ends),
-        across=Axis(label=labels[0], ends=x_ends),
-        curves=curves,
-        marks=tuple(marks),
-        rules=rules,
-        title=title,
-        shape=Shape.PLANE,
+        label=labels[1],
+        draw=partial(_draw, motion, paths, view, labels, title, pole),
+        ratio=min(max(view.half.imag / view.half.real, _FLATTEST), _TALLEST),
     )
 
 
 @dataclass(frozen=True, kw_only=True)
-class _Room:
-    """The area of a plane: all curves, or for unbounded curves the part near ``centre``."""
+class _View:
+    """The area of a plane: all paths, or of unbounded paths the part near their middle.
 
-    centre: complex
-    radius: float
+    Parameters
+    ----------
+    middle, size
+        Middle and larger side.
+    half : complex
+        Half of both sides, with room for texts.
+    """
+
+    middle: complex
     size: float
+    half: complex
 
-    @property
-    def ends(self) -> tuple[tuple[float, float] | None, tuple[float, float] | None]:
-        if not self.radius:
-            return None, None
-        (x, y), r = (self.centre.real, self.centre.imag), self.radius
-        return (x - r, x + r), (y - r, y + r)
+    @classmethod
+    def of(cls, motion: Motion, paths: Sequence[ComplexArray]) -> _View:
+        every = np.concatenate(paths)
+        every = every[np.isfinite(every)]
+        if not len(every):
+            return cls._around(0j, 1 + 1j)
+        if "dead point" in motion.limit or "change point" in motion.limit:
+            middle = complex(np.median(every.real), np.median(every.imag))
+            away = np.abs(every - middle)
+            usual = float(np.percentile(away, _USUAL))
+            if away.max() > _BEYOND * usual > 0.0:
+                return cls._around(middle, 2 * _SHOWN * usual * (1 + 1j))
+        low = complex(every.real.min(), every.imag.min())
+        high = complex(every.real.max(), every.imag.max())
+        return cls._around(0.5 * (low + high), high - low)
+
+    @classmethod
+    def _around(cls, middle: complex, sides: complex) -> _View:
+        size = max(sides.real, sides.imag) or 1.0
+        return cls(middle=middle, size=size, half=0.5 * sides + _MARGIN * size * (1 + 1j))
 
     def shows(self, place: complex) -> bool:
-        return bool(np.isfinite(place)) and not 0 < self.radius < abs(place - self.centre)
-
-    def limits(self, motion: Motion, path: ComplexArray, tone: int) -> Iterator[Mark]:
-        """Dead points and change points on a path."""
-        for k, kind in enumerate(motion.limit):
-            if kind in ("dead point", "change point") and self.shows(path[k]):
-                yield Mark(x=path[k].real, y=path[k].imag, tone=tone, kind=kind)
-
-    def stations(
-        self, motion: Motion, path: ComplexArray, tone: int, told: list[complex]
-    ) -> Iterator[Mark]:
-        """Stations on a path, labelled with the input where space permits.
-
-        ``told`` are the positions of texts; those of this path are added.
-        """
-        found = np.isfinite(path)
-        middle = complex(path[found].mean()) if found.any() else 0j
-        dots: list[complex] = []
-        for k, text in _stations(motion):
-            here = complex(path[k])
-            if not self.shows(here) or any(abs(here - d) < _HIDDEN * self.size for d in dots):
-                continue
-            dots.append(here)
-            away = _outwards(path, k, middle)
-            place = here + 0.5 * _APART * self.size * away
-            free = all(abs(place - other) > _APART * self.size for other in told)
-            told += [place] if free else []
-            yield Mark(
-                x=here.real,
-                y=here.imag,
-                tone=tone,
-                kind="station",
-                text=text if free else "",
-                away=(away.real, away.imag),
-            )
+        away = place - self.middle
+        return abs(away.real) < self.half.real and abs(away.imag) < self.half.imag
 
 
-def _room(motion: Motion, paths: Sequence[ComplexArray], pole: bool) -> _Room:
-    every = np.concatenate(paths)
-    every = every[np.isfinite(every)]
+def _draw(
+    motion: Motion,
+    paths: Mapping[str, ComplexArray],
+    view: _View,
+    labels: tuple[str, str],
+    title: str,
+    pole: bool,
+    axes: ChartAxes,
+) -> None:
+    """Paths with their limits and with stations, to one scale."""
+    ax = axes.ax
+    ax.set_aspect("equal", adjustable="datalim")
+    where = breaks(motion, motion.inputs[lead_of(motion)])
+    texts: list[complex] = []
+    for tone, (name, path) in enumerate(paths.items(), start=1):
+        x, y = broken(path.real, where), broken(path.imag, where)
+        axes.curve(x, y, printed_name(name), tone, legend=len(paths) > 1)
+        for kind in ("dead point", "change point"):
+            rows = (np.array(motion.limit) == kind) & np.isfinite(path)
+            if rows.any():
+                axes.marks(path.real[rows], path.imag[rows], kind, tone)
+        stations = [(k, text) for k, text in _stations(motion) if np.isfinite(path[k])]
+        axes.stations(np.array([path[k] for k, _ in stations], dtype=complex), tone)
+        for k, text in stations:
+            away = _outwards(path, k, complex(np.nanmean(path)))
+            place = complex(path[k]) + 0.5 * _APART * view.size * away
+            if view.shows(place) and all(abs(place - t) > _APART * view.size for t in texts):
+                texts.append(place)
+                axes.station_text(text, complex(path[k]), away)
     if pole:
-        every = np.append(every, 0j)
-    if not len(every):
-        return _Room(centre=0j, radius=0.0, size=1.0)
-    size = float(max(np.ptp(every.real), np.ptp(every.imag))) or 1.0
-    centre = complex(np.median(every.real), np.median(every.imag))
-    away = np.abs(every - centre)
-    usual = float(np.percentile(away, _USUAL))
-    singular = "dead point" in motion.limit or "change point" in motion.limit
-    if not singular or away.max() <= _BEYOND * usual or not usual:
-        return _Room(centre=centre, radius=0.0, size=size)
-    return _Room(centre=centre, radius=_SHOWN * usual, size=2 * _SHOWN * usual)
+        axes.pole()
+    axes.labels(*labels, title)
+    ends = (view.middle - view.half, view.middle + view.half)
+    ax.dataLim.set_points(np.array([(end.real, end.imag) for end in ends]))
+    ax.margins(0.0)
+    ax.locator_params(nbins=_TICKS)
 
 
 def _outwards(path: ComplexArray, k: int, middle: complex) -> complex:
@@ -271,7 +242,7 @@ def _stations(motion: Motion) -> Iterator[tuple[int, str]]:
     span = float(np.ptp(values[motion.asked]))
     if not span:
         return
-    step = across_step(span, motion.units.angle) if across.turn else round_step(span / _STATIONS)
+    step = tick_step(span, _STATIONS, motion.units.angle if across.turn else None)
     on = [k for k in np.flatnonzero(rows) if _multiple(float(values[k]), step)]
     for k in sorted(on, key=lambda k: not _multiple(float(values[k]), 2 * step)):
         yield int(k), printed_value(_cleaned(float(values[k]), step), across.unit, motion.units)
