@@ -299,9 +299,9 @@ def test_a_link_is_followed_and_a_device_is_not_replaced(folder: Path) -> None:
     ("command", "suffix", "first"),
     [
         ("draw", "tikz", b"% "),
-        ("code", "c", b"/*"),
-        ("robot", "sdf", b"<!--"),
-        ("report", "md", b"# "),
+        ("export", "c", b"/*"),
+        ("export", "sdf", b"<!--"),
+        ("export", "md", b"# "),
     ],
 )
 def test_no_command_replaces_a_device(
@@ -312,7 +312,7 @@ def test_no_command_replaces_a_device(
     (folder / f"link.{suffix}").symlink_to(pipe)
     reader = os.open(pipe, os.O_RDONLY | os.O_NONBLOCK)
     (folder / "short.toml").write_text('sections = ["summary"]\n', encoding="utf-8")
-    more = ["--template", "short.toml"] if command == "report" else []
+    more = ["--template", "short.toml"] if suffix == "md" else []
     try:
         done = run(command, "four-bar.toml", "-o", f"link.{suffix}", *more)
         assert done.exit_code == 0, done.stderr
