@@ -9,6 +9,8 @@ import numpy as np
 import pytest
 
 import linkwork as lw
+from linkwork.core.foundation.arrays import Array
+from linkwork.synthesis import lane_problems
 from linkwork.synthesis.improvement import (
     curve_starts,
     fit_problem,
@@ -16,7 +18,6 @@ from linkwork.synthesis.improvement import (
     fronts as front_designs,
     fronts as front_fit,
     improving,
-    lanes as lane_work,
     proved_design,
 )
 from linkwork.synthesis.solvers import solving
@@ -41,8 +42,8 @@ def _stops(work: Callable[..., Any], call: int) -> Callable[..., Any]:
 
 @pytest.fixture
 def small_parts(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(lane_work, "cores", lambda: 1)
-    monkeypatch.setattr(lane_work, "_MOST", 8)
+    monkeypatch.setattr(lane_problems, "cores", lambda: 1)
+    monkeypatch.setattr(lane_problems, "_MOST", 8)
 
 
 @pytest.mark.usefixtures("small_parts")
@@ -66,7 +67,7 @@ def test_the_preparation_of_starts_is_counted_and_prepared_starts_are_designs(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     told: list[float] = []
-    monkeypatch.setattr(fit_problem, "minimise", _stops(lambda: None, 1))
+    monkeypatch.setattr(lane_problems, "minimise", _stops(lambda: None, 1))
     found = lw.loads(CRANK).improve(_GOALS, vary=["O2 A"], starts=30, progress=told.append)
     assert len(found) == 8
     assert found[0].sound
@@ -143,7 +144,14 @@ def test_a_front_is_kept_when_the_choice_of_its_next_lanes_is_interrupted(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     goals = [*_GOALS, {"of": "max(d)", "target": 60}]
-    monkeypatch.setattr(front_fit, "objective_spans", _stops(lambda: None, 1))
+    spans, first = front_fit.objective_spans, iter([True])
+
+    def once(*values: Array) -> Array:
+        if next(first, False):
+            raise KeyboardInterrupt
+        return spans(*values)
+
+    monkeypatch.setattr(front_fit, "objective_spans", once)
     front = lw.loads(CRANK).improve(goals, vary=["O2 A"], starts=1, front=5)
     assert front
     assert all(design.message.startswith("interrupted: the best so far") for design in front)
@@ -152,7 +160,7 @@ def test_a_front_is_kept_when_the_choice_of_its_next_lanes_is_interrupted(
 def test_results_do_not_depend_on_the_cores(monkeypatch: pytest.MonkeyPatch) -> None:
     numbers = []
     for count in (1, 3):
-        monkeypatch.setattr(lane_work, "cores", lambda count=count: count)
+        monkeypatch.setattr(lane_problems, "cores", lambda count=count: count)
         found = lw.loads(CRANK).improve(_GOALS, starts=30, seed=3)
         numbers.append([list(design.numbers.values()) for design in found])
     assert numbers[0] == numbers[1]
