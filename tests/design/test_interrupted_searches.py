@@ -43,7 +43,7 @@ def _stops(work: Callable[..., Any], call: int) -> Callable[..., Any]:
 @pytest.fixture
 def small_parts(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(lane_problems, "cores", lambda: 1)
-    monkeypatch.setattr(lane_problems, "_MOST", 8)
+    monkeypatch.setattr(lane_problems.LaneProblem, "most_lanes", 8)
 
 
 @pytest.mark.usefixtures("small_parts")
@@ -205,6 +205,23 @@ def test_draws_of_curves_that_are_interrupted_improve_the_best_so_far(
     monkeypatch.setattr(curve_starts, "_compared", _stops(compared, 1))
     with pytest.raises(KeyboardInterrupt):
         task.solve()
+
+
+@pytest.mark.parametrize("share", [0.0, 0.3])
+def test_a_fit_of_a_function_that_is_interrupted_keeps_the_best_so_far(share: float) -> None:
+    pairs = [(90.0 * x, 60.0 * x**2) for x in np.linspace(0.0, 1.0, 11)]
+    task = lw.Task.function(pairs, mechanism="four-bar", fit="minimax")
+
+    def stop(fraction: float) -> None:
+        if fraction >= share:
+            raise KeyboardInterrupt
+
+    found, finished = task.solve(progress=stop), task.solve()
+    assert found.interrupted
+    assert not finished.interrupted
+    assert found.message.startswith("interrupted: the best so far of")
+    least = min(design.error for design in finished.designs)
+    assert least <= min(design.error for design in found.designs) < 3.0 * least
 
 
 def test_the_first_search_is_kept_when_the_second_is_interrupted(

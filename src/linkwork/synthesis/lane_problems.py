@@ -16,13 +16,7 @@ import numpy as np
 
 from linkwork.core.foundation.arrays import AnyArray, Array, BoolArray, IndexArray
 from linkwork.core.foundation.loading import cores, share_out
-from linkwork.synthesis.lane_least_squares import (
-    Box,
-    LaneFit,
-    OwnVariables,
-    Residuals,
-    minimise,
-)
+from linkwork.synthesis.lane_least_squares import Box, LaneFit, OwnVariables, Residuals, minimise
 
 # ----------------------------------------------------------------------
 # Constraints of lanes, by the method of multipliers.
@@ -64,13 +58,13 @@ class Multipliers:
         """
         over = np.maximum(0.0, h + self.shift[lanes])  # eq. (155)
         self._new[lanes] = np.nan_to_num(over)
-        factor = np.broadcast_to(self.weight * unit, h.shape)
+        broken, factor = over > 0.0, self.weight * unit
 
         def kept(slope: AnyArray) -> Array:
-            broken, wide = (
-                own.reshape(*h.shape, *[1] * (slope.ndim - h.ndim)) for own in (over > 0.0, factor)
-            )
-            return np.where(broken, (wide * slope).real, 0.0)
+            if slope.ndim == h.ndim:
+                return np.where(broken, (factor * slope).real, 0.0)
+            wide = factor if np.ndim(factor) == 0 else factor[..., None]
+            return np.where(broken[..., None], (wide * slope).real, 0.0)
 
         return (self.weight * over, *map(kept, slopes))
 
@@ -137,7 +131,7 @@ def powered(found: Residuals, power: int, largest: Array, counted: BoolArray) ->
 # Work on parts of lanes on all cores, which tells its progress and which the user may stop.
 
 
-_PART, _MOST = 8, 64  # lanes of one thread: of many rows, of few
+_PART = 8  # lanes of one thread, of many rows
 _ROWS = 4000  # of all lanes of a thread: fewer would take as long
 
 #: Works on lanes, and calls what it gets before each step.
@@ -151,6 +145,8 @@ class LaneWork:
     ----------
     rows : int
         Of each lane.
+    most : int
+        Lanes of one thread.
 
     Attributes
     ----------
@@ -163,15 +159,15 @@ class LaneWork:
         Whether the user has stopped the work.
     """
 
-    def __init__(self, rows: int) -> None:
-        self.rows = rows
+    def __init__(self, rows: int, most: int) -> None:
+        self.rows, self.most = rows, most
         self.tell: Callable[[float], None] | None = None
         self.whole, self.done, self.share_of_lanes = 1.0, 0.0, 1.0
         self.stopped = False
 
     def parts(self, lanes: IndexArray) -> list[IndexArray]:
         """Parts whose sizes do not depend on the number of cores; one at least."""
-        size = min(max(_PART, _ROWS // max(1, self.rows)), _MOST)
+        size = min(max(_PART, _ROWS // max(1, self.rows)), self.most)
         return [lanes[k : k + size] for k in range(0, max(1, len(lanes)), size)]
 
     def share(self, lanes: IndexArray, steps: int, work: Work) -> None:
@@ -225,12 +221,15 @@ class LaneProblem(ABC):
         Of the misses, for the largest one.
     """
 
+    #: Lanes of one thread, of few rows; more where residuals are soon computed.
+    most_lanes = 64
+
     def __init__(
         self, box: Box, own_variables: OwnVariables, lanes: int, rows: int, counted: BoolArray
     ) -> None:
         self.box, self.own_variables, self.lanes, self.counted = box, own_variables, lanes, counted
         self.power, self._largest = 1, np.ones(lanes)
-        self.work = LaneWork(rows)
+        self.work = LaneWork(rows, self.most_lanes)
 
     @abstractmethod
     def evaluate(

@@ -116,11 +116,8 @@ class CurveConstraints:
         by_x[:, np.arange(len(index)), index] = 1.0
         if self.kind is not FourBarCurves:
             return lengths, by_x
-        ground = x[:, 2:4] - x[:, :2]
-        length = np.hypot(ground[:, 0], ground[:, 1])
+        length, along = FourBarCurves.ground(x)
         slope = np.zeros((len(x), 1, x.shape[1]))
-        with np.errstate(all="ignore"):
-            along = np.nan_to_num(ground / length[:, None])
         slope[:, 0, :2], slope[:, 0, 2:4] = -along, along
         return np.column_stack([lengths, length]), np.concatenate([by_x, slope], axis=1)
 
@@ -156,26 +153,21 @@ class CurveConstraints:
             found, by_x = self._curves.limits(x)
             by_x[:, :, 3] *= cosine
             return found + (1.0 - cosine) * x[:, 3, None], by_x
-        ground = x[:, 2:4] - x[:, :2]
-        g = np.hypot(ground[:, 0], ground[:, 1])
-        a, c, b = x[:, 4], x[:, 5], x[:, 6]
-        both, slopes = [], []
-        with np.errstate(all="ignore"):
-            along = np.nan_to_num(ground / g[:, None])
-        for sense in (1.0, -1.0):
-            d = g + sense * a
-            inner = b**2 + c**2 - d**2
-            sign, size = np.sign(inner), b + c
-            h = (np.abs(inner) - 2.0 * b * c * cosine) / size
-            slope = np.zeros((len(x), x.shape[1]))
-            by_d = -2.0 * sign * d / size
-            slope[:, :2], slope[:, 2:4] = -by_d[:, None] * along, by_d[:, None] * along
-            slope[:, 4] = sense * by_d
-            slope[:, 5] = (2.0 * sign * c - 2.0 * b * cosine - h) / size
-            slope[:, 6] = (2.0 * sign * b - 2.0 * c * cosine - h) / size
-            both.append(h)
-            slopes.append(slope)
-        return np.stack(both, axis=1), np.stack(slopes, axis=1)
+        g, along = FourBarCurves.ground(x)
+        a, c, b = (x[:, k, None] for k in (4, 5, 6))
+        sense = np.array([1.0, -1.0])
+        d = g[:, None] + sense * a
+        inner = b**2 + c**2 - d**2
+        sign, size = np.sign(inner), b + c
+        h = (np.abs(inner) - 2.0 * b * c * cosine) / size
+        slope = np.zeros((*h.shape, x.shape[1]))
+        by_d = -2.0 * sign * d / size
+        slope[..., 2:4] = by_d[:, :, None] * along[:, None]
+        slope[..., :2] = -slope[..., 2:4]
+        slope[..., 4] = sense * by_d
+        slope[..., 5] = (2.0 * sign * c - 2.0 * b * cosine - h) / size
+        slope[..., 6] = (2.0 * sign * b - 2.0 * c * cosine - h) / size
+        return h, slope
 
 
 # ----------------------------------------------------------------------
@@ -272,6 +264,8 @@ def fit_curve(
 
 class _CurveProblem(LaneProblem):
     """The residuals of a goal for lanes of starts."""
+
+    most_lanes = 128
 
     def __init__(self, kind: type[CouplerCurves], goal: CurveGoal, found: CurveStarts) -> None:
         self.kind, self.goal = kind, goal

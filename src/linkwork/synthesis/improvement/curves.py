@@ -166,15 +166,20 @@ class FourBarCurves(CouplerCurves):
         """The direction from A0 to B0."""
         return np.asarray(np.arctan2(x[:, 3] - x[:, 1], x[:, 2] - x[:, 0]))
 
+    @staticmethod
+    def ground(x: Array) -> tuple[Array, Array]:
+        """The distance of the fixed pivots, (D,), and the direction from A0 to B0, (D, 2)."""
+        ground = x[:, 2:4] - x[:, :2]
+        length = np.hypot(ground[:, 0], ground[:, 1])
+        with np.errstate(all="ignore"):
+            return length, np.nan_to_num(ground / length[:, None])
+
     def limits(self, x: Array) -> tuple[Array, Array]:
         """g + a - (b + c) and |b - c| - |g - a|, which end the branch, and by x."""
-        ground = x[:, 2:4] - x[:, :2]
-        g = np.hypot(ground[:, 0], ground[:, 1])
+        g, along = self.ground(x)
         a, c, b = x[:, 4], x[:, 5], x[:, 6]
         found = np.stack([g + a - (b + c), np.abs(b - c) - np.abs(g - a)], axis=1)
         by_x = np.zeros((*found.shape, 9))
-        with np.errstate(all="ignore"):
-            along = ground / g[:, None]
         far, near = np.sign(b - c), np.sign(g - a)
         by_x[:, 0, :2], by_x[:, 0, 2:4] = -along, along
         by_x[:, 0, 4], by_x[:, 0, 5], by_x[:, 0, 6] = 1.0, -1.0, -1.0

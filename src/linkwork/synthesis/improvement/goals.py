@@ -14,13 +14,7 @@ import numpy as np
 from linkwork.core.expression.derivatives import Jet, evaluate
 from linkwork.core.expression.grammar import CONSTANTS, parse
 from linkwork.core.expression.tree import Node, names_in
-from linkwork.core.foundation.arrays import (
-    AnyArray,
-    Array,
-    BoolArray,
-    ComplexArray,
-    IndexArray,
-)
+from linkwork.core.foundation.arrays import AnyArray, Array, BoolArray, ComplexArray, IndexArray
 from linkwork.core.foundation.errors import InputError, UnknownNameError
 from linkwork.core.foundation.rounding import EQUAL_ROWS
 from linkwork.core.foundation.units import FULL_TURN

@@ -216,6 +216,8 @@ class FunctionFits:
         Whether a loop closes with some transmission angle, or its fit is proved to be minimal.
     minimal : (D,)
         Whether a fit is proved to be a local minimum of the largest error, to first order.
+    interrupted : bool
+        Whether the user stopped the fit, which keeps the best so far.
     """
 
     x: Array
@@ -223,10 +225,13 @@ class FunctionFits:
     wrong: Array
     closes: BoolArray
     minimal: BoolArray
+    interrupted: bool = False
 
 
 class _FunctionProblem(LaneProblem):
     """Structural errors of lanes."""
+
+    most_lanes = 128
 
     def __init__(self, u: Array, v: Array, slides: bool, side: Array, held: Held, box: Box) -> None:
         self.u, self.v, self.side, self.wishes = u, v, side, held(len(side))
@@ -302,7 +307,7 @@ def fit_functions(
     lanes, fit, side = problem_of(side[order]), fit.take(order), side[order]
     powers = (*POWERS, *POWERS[-1:] * (len(_WEIGHTS) if lanes.multipliers else 0))
     lanes.work.tell, lanes.work.whole = progress, len(powers) * _POWER_STEPS
-    for lanes.power in powers if minimax else ():
+    for lanes.power in powers if minimax and not fit.interrupted else ():
         fit = lanes.further(fit, np.arange(len(fit)), _POWER_STEPS)
         lanes.weigh(_WEIGHTS[-1])
     x, minimal = fit.x.copy(), np.zeros(len(fit), dtype=bool)
@@ -317,7 +322,7 @@ def fit_functions(
     index = index[closes[index] | (np.arange(len(index)) == 0)]
     return FunctionFits(
         x=x[index], side=side[index], wrong=wrong[index], closes=closes[index],
-        minimal=minimal[index],
+        minimal=minimal[index], interrupted=fit.interrupted,
     )  # fmt: skip
 
 
