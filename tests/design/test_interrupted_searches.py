@@ -9,6 +9,8 @@ import numpy as np
 import pytest
 
 import linkwork as lw
+from linkwork.core.foundation.arrays import Array
+from linkwork.synthesis import lane_problems
 from linkwork.synthesis.improvement import (
     curve_starts,
     fit_problem,
@@ -16,7 +18,6 @@ from linkwork.synthesis.improvement import (
     fronts as front_designs,
     fronts as front_fit,
     improving,
-    lanes as lane_work,
     proved_design,
 )
 from linkwork.synthesis.solvers import solving
@@ -41,8 +42,8 @@ def _stops(work: Callable[..., Any], call: int) -> Callable[..., Any]:
 
 @pytest.fixture
 def small_parts(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(lane_work, "cores", lambda: 1)
-    monkeypatch.setattr(lane_work, "_MOST", 8)
+    monkeypatch.setattr(lane_problems, "cores", lambda: 1)
+    monkeypatch.setattr(lane_problems.LaneProblem, "most_lanes", 8)
 
 
 @pytest.mark.usefixtures("small_parts")
@@ -66,7 +67,7 @@ def test_the_preparation_of_starts_is_counted_and_prepared_starts_are_designs(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     told: list[float] = []
-    monkeypatch.setattr(fit_problem, "minimise", _stops(lambda: None, 1))
+    monkeypatch.setattr(lane_problems, "minimise", _stops(lambda: None, 1))
     found = lw.synthesis.improve(
         lw.loads(CRANK), _GOALS, vary=["O2 A"], starts=30, progress=told.append
     )
@@ -145,7 +146,14 @@ def test_a_front_is_kept_when_the_choice_of_its_next_lanes_is_interrupted(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     goals = [*_GOALS, {"of": "max(d)", "target": 60}]
-    monkeypatch.setattr(front_fit, "objective_spans", _stops(front_fit.objective_spans, 2))
+    spans, first = front_fit.objective_spans, iter([True])
+
+    def once(*values: Array) -> Array:
+        if next(first, False):
+            raise KeyboardInterrupt
+        return spans(*values)
+
+    monkeypatch.setattr(front_fit, "objective_spans", once)
     front = lw.synthesis.improve(lw.loads(CRANK), goals, vary=["O2 A"], starts=1, front=5)
     assert front
     assert all(design.message.startswith("interrupted: the best so far") for design in front)
@@ -154,7 +162,7 @@ def test_a_front_is_kept_when_the_choice_of_its_next_lanes_is_interrupted(
 def test_results_do_not_depend_on_the_cores(monkeypatch: pytest.MonkeyPatch) -> None:
     numbers = []
     for count in (1, 3):
-        monkeypatch.setattr(lane_work, "cores", lambda count=count: count)
+        monkeypatch.setattr(lane_problems, "cores", lambda count=count: count)
         found = lw.synthesis.improve(lw.loads(CRANK), _GOALS, starts=30, seed=3)
         numbers.append([list(design.numbers.values()) for design in found])
     assert numbers[0] == numbers[1]
@@ -199,6 +207,23 @@ def test_draws_of_curves_that_are_interrupted_improve_the_best_so_far(
     monkeypatch.setattr(curve_starts, "_compared", _stops(compared, 1))
     with pytest.raises(KeyboardInterrupt):
         task.solve()
+
+
+@pytest.mark.parametrize("share", [0.0, 0.3])
+def test_a_fit_of_a_function_that_is_interrupted_keeps_the_best_so_far(share: float) -> None:
+    pairs = [(90.0 * x, 60.0 * x**2) for x in np.linspace(0.0, 1.0, 11)]
+    task = lw.Task.function(pairs, mechanism="four-bar", fit="minimax")
+
+    def stop(fraction: float) -> None:
+        if fraction >= share:
+            raise KeyboardInterrupt
+
+    found, finished = task.solve(progress=stop), task.solve()
+    assert found.interrupted
+    assert not finished.interrupted
+    assert found.message.startswith("interrupted: the best so far of")
+    least = min(design.error for design in finished.designs)
+    assert least <= min(design.error for design in found.designs) < 3.0 * least
 
 
 def test_the_first_search_is_kept_when_the_second_is_interrupted(

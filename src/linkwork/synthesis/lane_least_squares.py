@@ -230,14 +230,6 @@ class LaneFit:
         for name in _ARRAYS:
             getattr(self, name)[index] = getattr(part, name)
 
-    @classmethod
-    def joined(cls, parts: Sequence[Self]) -> Self:
-        """Lanes of several parts in one."""
-        columns: dict[str, Any] = {
-            name: np.concatenate([getattr(part, name) for part in parts]) for name in _ARRAYS
-        }
-        return cls(interrupted=any(part.interrupted for part in parts), **columns)
-
 
 _ARRAYS = tuple(field.name for field in fields(LaneFit) if field.name != "interrupted")
 

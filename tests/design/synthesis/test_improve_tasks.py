@@ -17,9 +17,9 @@ from linkwork.synthesis.defects.verdicts import JudgedDesign
 from linkwork.synthesis.designs_folder import FolderOptions, write_designs
 from linkwork.synthesis.loops.candidates import Drive
 from linkwork.synthesis.solvers import improvement as improvement_synthesis
-from linkwork.synthesis.solvers.improved_mechanism import ImprovedMechanism
 from linkwork.synthesis.solvers.result import relative_misses
 from linkwork.synthesis.solvers.solving import advice_of, remarks_on, wishes_of
+from linkwork.synthesis.solvers.swept_design import SweptDesign
 
 _HEAD = 'format = 1\ntask = "improve"\nmechanism = "four-bar"\n'
 _HERE = '[improve]\npoint = "{}"\n[[positions]]\npoint = [1, 2]\n[[positions]]\npoint = [{}, {}]\n'
@@ -77,7 +77,7 @@ def _moved_crank(tmp_path: Path, step: int, **wanted: object) -> JudgedDesign:
 def test_what_breaks_a_wish_between_two_rows_is_found(tmp_path: Path) -> None:
     """The transmission angle is 60° at 90°, and 60.4° at least in rows 40° apart."""
     design = _moved_crank(tmp_path, 40, transmission={"least": 60.2})
-    assert isinstance(design, ImprovedMechanism)
+    assert isinstance(design, SweptDesign)
     motion = design.improved.motion
     assert motion is not None
     rows = motion["B.transmission"]
@@ -243,7 +243,7 @@ def test_a_front_is_delivered_in_its_order_and_drawn(tmp_path: Path) -> None:
         wanted={"lengths": {"least": 15}},
     )  # fmt: skip
     found = task.solve()
-    improved = [design for design in found.delivered if isinstance(design, ImprovedMechanism)]
+    improved = [design for design in found.delivered if isinstance(design, SweptDesign)]
     misses = [(design.goals["stroke(d)"], design.goals["max(d)"]) for design in improved]
     assert [design.number for design in found.delivered] == [1, 2, 3]
     assert misses == sorted(misses)

@@ -27,10 +27,10 @@ from linkwork.synthesis.loops.candidates import Candidates, Drive, LoopKind
 from linkwork.synthesis.loops.driven_loop import pivots_at
 from linkwork.synthesis.poses.burmester import CentrePoints, centre_points
 from linkwork.synthesis.precision.problem import cognates
-from linkwork.synthesis.solvers.improved_mechanism import ImprovedMechanism, SweptDesign
 from linkwork.synthesis.solvers.motions import poses_of
 from linkwork.synthesis.solvers.result import Synthesis, SynthesizedDesign
 from linkwork.synthesis.solvers.solving import advice_of, near_misses, remark_on
+from linkwork.synthesis.solvers.swept_design import SweptDesign
 from linkwork.synthesis.tasks.task import Task
 
 
@@ -59,7 +59,7 @@ def finite(value: float) -> float | None:
 
 
 def mechanism_found(
-    design: ImprovedMechanism,
+    design: SweptDesign,
     shown: DesignShown,
     point: str = "",
     inputs: tuple[float, ...] = (),
@@ -201,7 +201,7 @@ def design_found(found: Synthesis, index: int) -> DesignFound:
     """A design at the positions, and moving through its driven range if it is sound."""
     design = found.designs[index]
     if isinstance(design, SweptDesign):
-        return mechanism_found(design.moved, design_shown(design, index), inputs=design.inputs)
+        return mechanism_found(design, design_shown(design, index), inputs=design.inputs)
     assert isinstance(design, SynthesizedDesign)
     group, k = design.group, design.index
     own, drive = group.given.take(slice(k, k + 1)), group.drive

@@ -11,7 +11,7 @@ from linkwork.app.live.task_events import DesignFound, DesignShown, DesignsSugge
 from linkwork.app.task.designs import design_shown, mechanism_found
 from linkwork.core.foundation.errors import InputError, LinkworkError
 from linkwork.core.mechanism.description import Description
-from linkwork.synthesis.solvers.improved_mechanism import ImprovedMechanism
+from linkwork.synthesis.solvers.swept_design import SweptDesign
 from linkwork.synthesis.suggestion.suggesting import Origin, SuggestedDesign, Suggesting
 from linkwork.synthesis.tasks.task import Task
 
@@ -40,7 +40,7 @@ class Suggestions:
     def __init__(self, suggesting: Callable[[], Suggesting]) -> None:
         self._suggesting = suggesting
         self._designs: list[SuggestedDesign] = []
-        self._judged: list[ImprovedMechanism] = []
+        self._judged: list[SweptDesign] = []
         self._of: tuple[object, ...] | None = None  # whose mechanism is the given one
         self._note = ""
         self.chosen: int | None = None

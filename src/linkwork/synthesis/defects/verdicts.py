@@ -360,7 +360,7 @@ class _Words:
 
 
 @internal("linkage", "kinds", "task")
-@dataclass(frozen=True, kw_only=True, eq=False)
+@dataclass(frozen=True, kw_only=True, eq=False, repr=False)
 class JudgedDesign(ABC):
     """A mechanism for a task, and what keeps it from doing it.
 
@@ -388,6 +388,11 @@ class JudgedDesign(ABC):
     delivered: bool = False
     score: float = np.nan
 
+    def __repr__(self) -> str:
+        found = ", ".join(kind.value for kind in self.kinds) or "sound"
+        kind, number = type(self).__name__, self.number
+        return f"<{kind} {number}: {self.mechanism} driven at {self.driven}, {found}>"
+
     @property
     @abstractmethod
     def mechanism(self) -> str:
@@ -399,9 +404,9 @@ class JudgedDesign(ABC):
         """The driven link in words, or the leading input."""
 
     @property
-    @abstractmethod
     def numbers(self) -> dict[str, float]:
         """The numbers that vary [file units]; none where all of them are found."""
+        return {}
 
     @property
     def goals(self) -> dict[str, float]:
@@ -419,9 +424,9 @@ class JudgedDesign(ABC):
         """The inputs at the positions [file units]."""
 
     @property
-    @abstractmethod
     def first_input(self) -> float:
         """The input at the first position [file units]."""
+        return self.inputs[0]
 
     @property
     @abstractmethod
@@ -456,9 +461,9 @@ class JudgedDesign(ABC):
         """The unit of the error."""
 
     @property
-    @abstractmethod
     def kinds(self) -> tuple[DefectKind, ...]:
         """The kinds of its defects; none for a sound design."""
+        return tuple(defect.kind for defect in self.defects)
 
     @property
     @abstractmethod

@@ -1,33 +1,18 @@
-"""Constraints on the dimensions of curve drawers, by the method of multipliers.
-
-A constraint h(x) ≤ 0 adds the residual max(0, h + s), eq. (155). After a round of steps its shift s
-becomes max(0, h + s), so that in the end h ≤ 0 holds and not only nearly.
-
-References
-----------
-M. J. D. Powell, A method for nonlinear constraints in minimization problems, in: Optimization,
-Academic Press 1969, 283-298.
-"""
+"""Four-bars and slider-cranks whose coupler point follows a curve best, and their constraints."""
 
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 
-from linkwork.core.foundation.arrays import Array, ComplexArray, IndexArray
-from linkwork.core.foundation.loading import share_out
+from linkwork.core.foundation.arrays import Array, BoolArray, ComplexArray, IndexArray
 from linkwork.core.foundation.units import FULL_TURN
 from linkwork.synthesis.improvement.curve_starts import CurveStarts, best_starts
 from linkwork.synthesis.improvement.curves import CouplerCurves, CurveGoal, FourBarCurves
-from linkwork.synthesis.lane_least_squares import (
-    LaneFit,
-    OwnVariables,
-    Residuals,
-    minimise,
-    starts_of,
-)
+from linkwork.synthesis.lane_least_squares import LaneFit, OwnVariables, Residuals, starts_of
+from linkwork.synthesis.lane_problems import LaneProblem, Multipliers, different
 
 #: By how much fits exceed a wanted transmission angle [rad]: between rows, and where their last
 #: steps end, designs fell short of it by up to 2e-5.
@@ -43,79 +28,44 @@ class CurveConstraints:
     def __init__(self, kind: type[CouplerCurves], goal: CurveGoal, lanes: int) -> None:
         self.kind, self.goal = kind, goal
         self._curves = kind(np.ones(1))
-        #: The weight of the residuals of constraints, which grows.
-        self.weight = 1.0
-        self._point_shift, self._reach_shift = np.zeros((2, lanes, len(goal.points)))
-        self._shift = np.zeros(
-            (lanes, self._constraints(np.ones((1, len(kind.names) + 1)))[0].shape[1])
-        )
+        count = self._constraints(np.ones((1, len(kind.names) + 1)))[0].shape[1]
+        self._of_dimensions = Multipliers(lanes, count)
+        self._at_points, self._of_reach = (Multipliers(lanes, len(goal.points)) for _ in range(2))
 
-    def residuals(self, x: Array, lanes: IndexArray) -> tuple[Array, Array]:
+    @property
+    def multipliers(self) -> list[Multipliers]:
+        """Those of all constraints."""
+        return [self._of_dimensions, self._at_points, self._of_reach]
+
+    def residuals(self, x: Array, lanes: IndexArray) -> tuple[Array, ...]:
         """How far constraints are broken, (D, K), and by the parameters, (D, K, P)."""
-        h, by_x = self._constraints(x)
-        h = h + self._shift[lanes]  # eq. (155)
-        broken = h > 0.0
-        weight = self.weight
-        return np.where(broken, weight * h, 0.0), np.where(broken[:, :, None], weight * by_x, 0.0)
+        return self._of_dimensions.residuals(lanes, *self._constraints(x))
 
-    def weigh(self, weight: float) -> None:
-        """Change the weight; the multipliers, weight² times the shifts, stay."""
-        for shift in (self._shift, self._point_shift, self._reach_shift):
-            shift *= (self.weight / weight) ** 2
-        self.weight = weight
-
-    def at_points(
-        self, x: Array, angles: Array, lanes: IndexArray
-    ) -> tuple[Array, Array, Array] | None:
+    def at_points(self, x: Array, angles: Array, lanes: IndexArray) -> tuple[Array, ...] | None:
         """How far the transmission angle is too small at points, (D, N), by the dimensions and by
         the angles; ``None`` where the whole driven range is constrained.
         """
         if self.goal.must_turn or self.goal.range is not None:
             return None
         cosine, by_x, by_angle = self._curves.cosines(x, angles)
-        weight = self.weight
-        sign = weight * np.sign(cosine) * self.goal.size
-        h = np.abs(cosine) * self.goal.size - self._most + self._point_shift[lanes]
-        broken = h > 0.0
-        return (
-            np.where(broken, weight * h, 0.0 * h),
-            np.where(broken[:, :, None], by_x * sign[:, :, None], 0.0),
-            np.where(broken, by_angle * sign, 0.0),
-        )
+        sign = np.sign(cosine) * self.goal.size
+        h = np.abs(cosine) * self.goal.size - self._most
+        return self._at_points.residuals(lanes, h, by_x, by_angle, unit=sign)
 
     def beyond(
         self, missed: ComplexArray, by_x: ComplexArray, by_angle: ComplexArray, lanes: IndexArray
-    ) -> tuple[Array, Array, Array] | None:
+    ) -> tuple[Array, ...] | None:
         """How far points are missed beyond their tolerances, (D, N), by the dimensions and by the
         angles, from the same of P - the points; ``None`` without tolerances.
         """
         if self.goal.reach is None:
             return None
-        h = self._excess(missed) + self._reach_shift[lanes]
-        broken, weight = h > 0.0, self.weight
-        with np.errstate(all="ignore"):
-            along = np.nan_to_num(missed.conj() / np.abs(missed)) * weight
-            return (
-                np.where(broken, weight * h, 0.0 * h),
-                np.where(broken[:, :, None], (along[:, :, None] * by_x).real, 0.0),
-                np.where(broken, (along * by_angle).real, 0.0),
-            )
-
-    def _excess(self, missed: ComplexArray) -> Array:
-        assert self.goal.reach is not None
         # a narrow tolerance keeps a narrow margin
         margin = np.minimum(_MARGIN * self.goal.size, _MARGIN * self.goal.reach)
-        return np.asarray(np.abs(missed) - self.goal.reach + margin)
-
-    def update(self, x: Array, angles: Array, missed: ComplexArray, lanes: IndexArray) -> None:
-        """New shifts for lanes that are at x, where points are missed by P - the points (D, N)."""
-        if self.goal.reach is not None:
-            shift = self._excess(missed) + self._reach_shift[lanes]
-            self._reach_shift[lanes] = np.maximum(0.0, np.nan_to_num(shift))
-        self._shift[lanes] = np.maximum(0.0, self._constraints(x)[0] + self._shift[lanes])
-        points = self.at_points(x[:, : len(self.kind.names)], angles, lanes)
-        if points is not None:
-            self._point_shift[lanes] = np.nan_to_num(points[0]) / self.weight
+        h = np.abs(missed) - self.goal.reach + margin
+        with np.errstate(all="ignore"):
+            along = np.nan_to_num(missed.conj() / np.abs(missed))
+            return self._of_reach.residuals(lanes, h, by_x, by_angle, unit=along)
 
     @property
     def _most(self) -> float:
@@ -166,11 +116,8 @@ class CurveConstraints:
         by_x[:, np.arange(len(index)), index] = 1.0
         if self.kind is not FourBarCurves:
             return lengths, by_x
-        ground = x[:, 2:4] - x[:, :2]
-        length = np.hypot(ground[:, 0], ground[:, 1])
+        length, along = FourBarCurves.ground(x)
         slope = np.zeros((len(x), 1, x.shape[1]))
-        with np.errstate(all="ignore"):
-            along = np.nan_to_num(ground / length[:, None])
         slope[:, 0, :2], slope[:, 0, 2:4] = -along, along
         return np.column_stack([lengths, length]), np.concatenate([by_x, slope], axis=1)
 
@@ -206,26 +153,21 @@ class CurveConstraints:
             found, by_x = self._curves.limits(x)
             by_x[:, :, 3] *= cosine
             return found + (1.0 - cosine) * x[:, 3, None], by_x
-        ground = x[:, 2:4] - x[:, :2]
-        g = np.hypot(ground[:, 0], ground[:, 1])
-        a, c, b = x[:, 4], x[:, 5], x[:, 6]
-        both, slopes = [], []
-        with np.errstate(all="ignore"):
-            along = np.nan_to_num(ground / g[:, None])
-        for sense in (1.0, -1.0):
-            d = g + sense * a
-            inner = b**2 + c**2 - d**2
-            sign, size = np.sign(inner), b + c
-            h = (np.abs(inner) - 2.0 * b * c * cosine) / size
-            slope = np.zeros((len(x), x.shape[1]))
-            by_d = -2.0 * sign * d / size
-            slope[:, :2], slope[:, 2:4] = -by_d[:, None] * along, by_d[:, None] * along
-            slope[:, 4] = sense * by_d
-            slope[:, 5] = (2.0 * sign * c - 2.0 * b * cosine - h) / size
-            slope[:, 6] = (2.0 * sign * b - 2.0 * c * cosine - h) / size
-            both.append(h)
-            slopes.append(slope)
-        return np.stack(both, axis=1), np.stack(slopes, axis=1)
+        g, along = FourBarCurves.ground(x)
+        a, c, b = (x[:, k, None] for k in (4, 5, 6))
+        sense = np.array([1.0, -1.0])
+        d = g[:, None] + sense * a
+        inner = b**2 + c**2 - d**2
+        sign, size = np.sign(inner), b + c
+        h = (np.abs(inner) - 2.0 * b * c * cosine) / size
+        slope = np.zeros((*h.shape, x.shape[1]))
+        by_d = -2.0 * sign * d / size
+        slope[..., 2:4] = by_d[:, :, None] * along[:, None]
+        slope[..., :2] = -slope[..., 2:4]
+        slope[..., 4] = sense * by_d
+        slope[..., 5] = (2.0 * sign * c - 2.0 * b * cosine - h) / size
+        slope[..., 6] = (2.0 * sign * b - 2.0 * c * cosine - h) / size
+        return h, slope
 
 
 # ----------------------------------------------------------------------
@@ -238,8 +180,7 @@ class CurveConstraints:
 _GAP = 1e-7  # between inputs of positions in order [rad]: far above rounding
 _DRAWS = 6  # for each start that is kept
 _DRAWING = 0.1  # of the work of the steps
-#: Lanes that go on, as shares of the starts, their steps, and the weight of constraints; after each
-#: the multipliers of constraints change.
+#: Lanes that go on, as shares of the starts, their steps, and the weight of constraints.
 _STAGES = (
     (1.0, 12, 10.0),
     (0.4, 30, 30.0),
@@ -248,7 +189,6 @@ _STAGES = (
     *((0.04, 200, 100.0),) * 2,
 )
 _FEWEST = 12  # lanes of a stage
-_PART = 128  # lanes of one thread
 _SAME_DIMENSIONS = 0.05  # relative difference of lengths, and of unit vectors
 
 
@@ -291,55 +231,45 @@ def fit_curve(
     starts: int,
     rng: np.random.Generator,
     progress: Callable[[float], None] | None = None,
-    threads: int = 1,
 ) -> FittedCurves:
-    """The best mechanisms of one kind; the same for the same generator, whatever the threads.
+    """The best mechanisms of one kind; the same for the same generator, whatever the cores.
 
     An interruption of the draws improves the few best ones so far, one of the steps ends these.
     """
-    work = sum(share * steps for share, steps, _ in _STAGES)
-    drawing, asked = _DRAWING * work, starts
-
-    def told(part: float) -> None:
-        if progress is not None:
-            progress(part / (drawing + work))
-
-    found, drawn = best_starts(
-        kind, goal, _DRAWS * starts, starts, rng, lambda part: told(part * drawing)
-    )
+    whole = (1.0 + _DRAWING) * sum(share * steps for share, steps, _ in _STAGES)
+    drawing, asked = _DRAWING / (1.0 + _DRAWING), starts
+    tell = progress or (lambda part: None)
+    draws = _DRAWS * starts
+    found, drawn = best_starts(kind, goal, draws, starts, rng, lambda part: tell(part * drawing))
     if not drawn:
         found, starts = found.take(np.arange(min(_FEWEST, len(found.x)))), _FEWEST
-    problem = _Problem(kind, goal, found)
-    fit = starts_of(problem.entries(found), problem.own(found))
-    numbers = np.arange(len(fit))
-    done = 0.0
+    problem = _CurveProblem(kind, goal, found)
+    problem.work.whole, problem.work.done = whole, drawing * whole
+    # what has stopped the draws would stop this too
+    problem.work.tell = tell if drawn else None
+    fit = problem.begun
+    keep = np.arange(len(fit))
     for share, steps, weight in _STAGES:
-        problem.constraints.weigh(weight)
-        keep = np.argsort(fit.total, kind="stable")[: max(_FEWEST, round(share * starts))]
-        if done:
-            fit, numbers = fit.take(keep), numbers[keep]
-
-        def tell(part: float, done: float = done, whole: float = share * steps) -> None:
-            if drawn:  # what has stopped the draws would stop this too
-                told(drawing + done + part * whole)
-
-        fit = problem.minimised(fit, numbers, steps, threads, tell)
-        done += share * steps
+        problem.weigh(weight)
+        most = max(_FEWEST, round(share * starts))
+        keep = keep[np.argsort(fit.total[keep], kind="stable")[:most]]
+        problem.work.share_of_lanes = share
+        fit = problem.further(fit, keep, steps)
         if fit.interrupted:
-            keep = np.argsort(fit.total, kind="stable")
-            keep = keep[: max(_FEWEST, round(_STAGES[-1][0] * starts))]
-            fit, numbers = fit.take(keep), numbers[keep]
+            most = max(_FEWEST, round(_STAGES[-1][0] * starts))
+            keep = keep[np.argsort(fit.total[keep], kind="stable")[:most]]
             break
-    return problem.result(replace(fit, interrupted=fit.interrupted or not drawn), numbers, asked)
+    return problem.result(fit, keep, asked, finished=drawn and not fit.interrupted)
 
 
-class _Problem:
+class _CurveProblem(LaneProblem):
     """The residuals of a goal for lanes of starts."""
+
+    most_lanes = 128
 
     def __init__(self, kind: type[CouplerCurves], goal: CurveGoal, found: CurveStarts) -> None:
         self.kind, self.goal = kind, goal
         self.curves, self.way = kind(found.side), found.way
-        self.box = goal.box(kind)
         self.constraints = CurveConstraints(kind, goal, len(found.side))
         #: Crank angles at which own variables are 0: the begin of the driven range.
         self.origin = 0.0 * self.way
@@ -348,15 +278,23 @@ class _Problem:
             self.origin = np.where(self.way > 0.0, *goal.range)
             width = goal.range[1] - goal.range[0]
         gap = min(_GAP, 0.5 * width / len(goal.points))
-        self.own_variables = OwnVariables(
+        own = OwnVariables(
             least=-width if goal.range is None else 0.0,
             most=width,
             in_order=goal.ordered and goal.inputs is None,
             gap=gap if goal.ordered else 0.0,
             span=FULL_TURN - gap,
         )
+        none = np.zeros(0, dtype=bool)
+        super().__init__(goal.box(kind), own, len(found.side), len(goal.points), none)
+        self.begun = starts_of(self._entries(found), self._own(found))
 
-    def entries(self, found: CurveStarts) -> Array:
+    @property
+    def multipliers(self) -> list[Multipliers]:
+        """Those of all constraints."""
+        return self.constraints.multipliers
+
+    def _entries(self, found: CurveStarts) -> Array:
         """Parameters of starts, (D, P)."""
         if self.goal.inputs is None:
             return found.x
@@ -367,7 +305,7 @@ class _Problem:
             turned += FULL_TURN * np.round((0.5 * (low + high) - turned) / FULL_TURN)
         return np.concatenate([found.x, turned], axis=1)
 
-    def own(self, found: CurveStarts) -> Array:
+    def _own(self, found: CurveStarts) -> Array:
         """Own variables of starts: crank angles, unless they are given."""
         if self.goal.inputs is not None:
             return np.zeros((len(found.x), 0))
@@ -385,7 +323,9 @@ class _Problem:
             return np.asarray(self.origin[lanes, None] + self.way[lanes, None] * t)
         return np.asarray(x[:, -1:] + self.goal.inputs)
 
-    def evaluate(self, x: Array, t: Array, lanes: IndexArray) -> Residuals:
+    def evaluate(
+        self, x: Array, t: Array, lanes: IndexArray, power: int | None = None
+    ) -> Residuals:
         """Distances from the points, and how far constraints are broken."""
         goal, count = self.goal, len(self.kind.names)
         curves = self.curves.take(lanes)
@@ -410,75 +350,32 @@ class _Problem:
         columns = np.concatenate([columns, by_t[:, :, :, None]], axis=3)
         return Residuals(missed, columns, None, shared, shared_by_x)
 
-    def minimised(
-        self,
-        fit: LaneFit,
-        numbers: IndexArray,
-        steps: int,
-        threads: int,
-        tell: Callable[[float], None],
-    ) -> LaneFit:
-        """Lanes after some steps; an interruption by ``tell`` leaves all of them where they are."""
-        if not len(fit):  # no start closes
-            return fit
-        # parts of one size, so that results do not depend on the number of threads
-        parts = [np.arange(k, min(k + _PART, len(fit))) for k in range(0, len(fit), _PART)]
-        done: list[LaneFit] = [fit] * len(parts)
-
-        tried, stopped = 0, False
-
-        def work(k: int) -> None:
-            nonlocal stopped
-            own, begun = numbers[parts[k]], False
-
-            def evaluate(x: Array, t: Array, lanes: IndexArray) -> Residuals:
-                nonlocal tried, begun
-                if begun and stopped:
-                    raise KeyboardInterrupt
-                if begun:  # the starts themselves are measured in any case
-                    tell(min(1.0, tried / (steps * len(parts))))
-                tried, begun = tried + 1, True
-                return self.evaluate(x, t, own[lanes])
-
-            done[k] = minimise(
-                evaluate, fit.take(parts[k]), self.box, steps, own=self.own_variables
-            )
-            stopped = stopped or done[k].interrupted
-
-        share_out(work, range(len(parts)), threads)
-        found = LaneFit.joined(done)
-        angles, count = self.angles(found.x, found.t, numbers), len(self.kind.names)
-        p = self.curves.take(numbers).points(found.x[:, :count], angles).guided
-        self.constraints.update(found.x, angles, p - self.goal.points, numbers)
-        return found
-
-    def result(self, fit: LaneFit, numbers: IndexArray, starts: int) -> FittedCurves:
-        """Different mechanisms, best first."""
-        count = len(self.kind.names)
-        there = self.evaluate(fit.x, fit.t, numbers)
-        missed = there.rows[:, :, :2]
+    def result(
+        self, fit: LaneFit, lanes: IndexArray, starts: int, *, finished: bool
+    ) -> FittedCurves:
+        """Different mechanisms among lanes, best first."""
+        fit, count = fit.take(lanes), len(self.kind.names)
+        missed = self.evaluate(fit.x, fit.t, lanes).rows[:, :, :2]
         total = np.einsum("dnm,dnm->d", missed, missed)
-        order = [int(k) for k in np.argsort(total, kind="stable") if np.isfinite(total[k])]
-        lengths, turns = self.curves.take(numbers).shapes(fit.x[:, :count])
+        lengths, turns = self.curves.take(lanes).shapes(fit.x[:, :count])
         # of timed points the common angle of the inputs
         turns = np.concatenate([turns, np.exp(1j * fit.x[:, count:])], axis=1)
-        chosen: list[int] = []
-        for k in order:
+
+        def alike(chosen: list[int], k: int) -> BoolArray:
             scale = self.goal.size + np.abs(lengths[k]).max()
             apart = np.abs(lengths[chosen] - lengths[k]).max(axis=1) / scale
             turned = np.abs(turns[chosen] - turns[k]).max(axis=1)
-            if (np.maximum(apart, turned) > _SAME_DIMENSIONS).all():
-                chosen.append(k)
-        index = np.array(chosen, dtype=int)
-        angles = self.angles(fit.x[index], fit.t[index], numbers[index])
+            return np.asarray(np.maximum(apart, turned) <= _SAME_DIMENSIONS)
+
+        index = different(total, alike)
         return FittedCurves(
             kind=self.kind,
             x=fit.x[index][:, :count],
-            angles=angles,
-            side=self.curves.side[numbers[index]],
+            angles=self.angles(fit.x[index], fit.t[index], lanes[index]),
+            side=self.curves.side[lanes[index]],
             total=total[index],
             starts=starts,
-            finished=not fit.interrupted,
+            finished=finished,
         )
 
 

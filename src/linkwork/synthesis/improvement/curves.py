@@ -10,7 +10,7 @@ from abc import ABC, abstractmethod
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field, replace
 from functools import cached_property
-from typing import ClassVar, Self
+from typing import Any, ClassVar, Self
 
 import numpy as np
 
@@ -57,15 +57,44 @@ class CouplerCurves(ABC):
         """Some of the lanes."""
         return type(self)(self.side[index])
 
-    @abstractmethod
     def points(self, x: Array, t: Array) -> LoopPoints:
         """The loop for dimensions (D, P) at crank angles (D, N)."""
+        moving, e, _ = self._closed(x, np.exp(1j * t))
+        z, c = (x[:, -2] + 1j * x[:, -1])[:, None], x[:, self.lengths[1], None]
+        return LoopPoints(moving_a=moving, moving_b=moving + c * e, guided=moving + z * e)
 
-    @abstractmethod
+    @np.errstate(all="ignore")  # there are no numbers where the loop is open
     def with_derivatives(
         self, x: Array, t: Array
     ) -> tuple[ComplexArray, ComplexArray, ComplexArray]:
         """P (D, N), its derivatives by the dimensions (D, N, P) and by the angle (D, N)."""
+        u = np.exp(1j * t)
+        moving, e, normal = self._closed(x, u)
+        a, c = (x[:, k, None] for k in self.lengths[:2])
+        z = (x[:, -2] + 1j * x[:, -1])[:, None]
+        # eq. (153): the coupler turns so that B stays on its circle or line
+        turned = 1j * z * e / (c * (normal.imag * e.real - normal.real * e.imag))
+        by_x = np.empty((*t.shape, len(self.names)), dtype=complex)
+        by_x[..., 0], by_x[..., 1] = 1.0, 1j
+        for k, shift in self._shifts(x, a * u + c * e, normal).items():
+            by_x[..., k] = turned * shift + {0: 1.0, 1: 1j}.get(k, 0.0)
+        by_x[..., self.lengths[0]] = u - turned * _dot(normal, u)
+        by_x[..., self.lengths[1]] = -turned * _dot(normal, e)
+        by_x[..., -2], by_x[..., -1] = e, 1j * e
+        swing = 1j * a * u
+        return moving + z * e, by_x, swing - turned * _dot(normal, swing)
+
+    @abstractmethod
+    def _closed(self, x: Array, u: ComplexArray) -> tuple[ComplexArray, ComplexArray, ComplexArray]:
+        """A and the direction of the coupler for directions of the crank, and across the way of B:
+        the rocker, or the normal of the line.
+        """
+
+    @abstractmethod
+    def _shifts(self, x: Array, reach: ComplexArray, normal: ComplexArray) -> dict[int, Any]:
+        """How far the way of B moves along its normal by each dimension but those in common, as
+        seen from A0; ``reach``: B - A0.
+        """
 
     @abstractmethod
     def cosines(self, x: Array, t: Array) -> tuple[Array, Array, Array]:
@@ -100,15 +129,7 @@ class FourBarCurves(CouplerCurves):
     names = ("A0.x", "A0.y", "B0.x", "B0.y", "crank", "coupler", "rocker", "p", "q")
     lengths = (4, 5, 6)
 
-    def points(self, x: Array, t: Array) -> LoopPoints:
-        """The loop for dimensions (D, P) at crank angles (D, N)."""
-        a, e, _ = self._closed(x, t, np.exp(1j * t))
-        z = (x[:, 7] + 1j * x[:, 8])[:, None]
-        return LoopPoints(moving_a=a, moving_b=a + x[:, 5, None] * e, guided=a + z * e)
-
-    def _closed(
-        self, x: Array, t: Array, u: ComplexArray
-    ) -> tuple[ComplexArray, ComplexArray, ComplexArray]:
+    def _closed(self, x: Array, u: ComplexArray) -> tuple[ComplexArray, ComplexArray, ComplexArray]:
         """A, the direction of the coupler, and B - B0."""
         a0, b0 = (x[:, 0] + 1j * x[:, 1])[:, None], (x[:, 2] + 1j * x[:, 3])[:, None]
         c, b = x[:, 5, None], x[:, 6, None]
@@ -121,26 +142,10 @@ class FourBarCurves(CouplerCurves):
             e = base * (along + 1j * self.side[:, None] * across) / (square * c)
         return moving, e, c * e - base
 
-    @np.errstate(all="ignore")  # there are no numbers where the loop is open
-    def with_derivatives(
-        self, x: Array, t: Array
-    ) -> tuple[ComplexArray, ComplexArray, ComplexArray]:
-        """P (D, N), its derivatives by the dimensions (D, N, P) and by the angle (D, N)."""
-        u = np.exp(1j * t)
-        moving, e, rocker = self._closed(x, t, u)
-        a, c, b = (x[:, k, None] for k in (4, 5, 6))
-        z = (x[:, 7] + 1j * x[:, 8])[:, None]
-        # eq. (153): dψ = (b db - R · (dA - dB0 + e dc)) / (R · i c e)
-        turned = 1j * z * e / (c * (rocker.imag * e.real - rocker.real * e.imag))
-        by_x = np.empty((*t.shape, 9), dtype=complex)
-        by_x[..., 2], by_x[..., 3] = turned * rocker.real, turned * rocker.imag
-        by_x[..., 0], by_x[..., 1] = 1.0 - by_x[..., 2], 1j - by_x[..., 3]
-        by_x[..., 4] = u - turned * _dot(rocker, u)
-        by_x[..., 5] = -turned * _dot(rocker, e)
-        by_x[..., 6] = turned * b
-        by_x[..., 7], by_x[..., 8] = e, 1j * e
-        swing = 1j * a * u
-        return moving + z * e, by_x, swing - turned * _dot(rocker, swing)
+    def _shifts(self, x: Array, reach: ComplexArray, normal: ComplexArray) -> dict[int, Any]:
+        """By both pivots and the rocker."""
+        n, m = normal.real, normal.imag
+        return {0: -n, 1: -m, 2: n, 3: m, 6: x[:, 6, None]}
 
     @np.errstate(all="ignore")
     def cosines(self, x: Array, t: Array) -> tuple[Array, Array, Array]:
@@ -161,15 +166,20 @@ class FourBarCurves(CouplerCurves):
         """The direction from A0 to B0."""
         return np.asarray(np.arctan2(x[:, 3] - x[:, 1], x[:, 2] - x[:, 0]))
 
+    @staticmethod
+    def ground(x: Array) -> tuple[Array, Array]:
+        """The distance of the fixed pivots, (D,), and the direction from A0 to B0, (D, 2)."""
+        ground = x[:, 2:4] - x[:, :2]
+        length = np.hypot(ground[:, 0], ground[:, 1])
+        with np.errstate(all="ignore"):
+            return length, np.nan_to_num(ground / length[:, None])
+
     def limits(self, x: Array) -> tuple[Array, Array]:
         """g + a - (b + c) and |b - c| - |g - a|, which end the branch, and by x."""
-        ground = x[:, 2:4] - x[:, :2]
-        g = np.hypot(ground[:, 0], ground[:, 1])
+        g, along = self.ground(x)
         a, c, b = x[:, 4], x[:, 5], x[:, 6]
         found = np.stack([g + a - (b + c), np.abs(b - c) - np.abs(g - a)], axis=1)
         by_x = np.zeros((*found.shape, 9))
-        with np.errstate(all="ignore"):
-            along = ground / g[:, None]
         far, near = np.sign(b - c), np.sign(g - a)
         by_x[:, 0, :2], by_x[:, 0, 2:4] = -along, along
         by_x[:, 0, 4], by_x[:, 0, 5], by_x[:, 0, 6] = 1.0, -1.0, -1.0
@@ -197,45 +207,18 @@ class SliderCrankCurves(CouplerCurves):
     names = ("A0.x", "A0.y", "crank", "coupler", "offset", "direction", "p", "q")
     lengths = (2, 3)
 
-    def points(self, x: Array, t: Array) -> LoopPoints:
-        """The loop for dimensions (D, P) at crank angles (D, N)."""
-        moving, e = self._closed(x, np.exp(1j * t))
-        z = (x[:, 6] + 1j * x[:, 7])[:, None]
-        return LoopPoints(
-            moving_a=moving, moving_b=moving + x[:, 3, None] * e, guided=moving + z * e
-        )
-
-    def _closed(self, x: Array, u: ComplexArray) -> tuple[ComplexArray, ComplexArray]:
-        """A, and the direction of the rod."""
+    def _closed(self, x: Array, u: ComplexArray) -> tuple[ComplexArray, ComplexArray, ComplexArray]:
+        """A, the direction of the rod, and the normal of the line."""
         a, c, h = (x[:, k, None] for k in (2, 3, 4))
         line = np.exp(1j * x[:, 5])[:, None]
         with np.errstate(all="ignore"):
             height = (h - a * (u * line.conj()).imag) / c
             e = line * (self.side[:, None] * np.sqrt(1.0 - height**2) + 1j * height)
-        return (x[:, 0] + 1j * x[:, 1])[:, None] + a * u, e
+        return (x[:, 0] + 1j * x[:, 1])[:, None] + a * u, e, 1j * line
 
-    @np.errstate(all="ignore")  # there are no numbers where the loop is open
-    def with_derivatives(
-        self, x: Array, t: Array
-    ) -> tuple[ComplexArray, ComplexArray, ComplexArray]:
-        """P (D, N), its derivatives by the dimensions (D, N, P) and by the angle (D, N)."""
-        u = np.exp(1j * t)
-        moving, e = self._closed(x, u)
-        a, c = x[:, 2, None], x[:, 3, None]
-        z = (x[:, 6] + 1j * x[:, 7])[:, None]
-        line = np.exp(1j * x[:, 5])[:, None]
-        # eq. (153) with the normal of the line instead of the rocker
-        turned = 1j * z * e / (c * _dot(line, e))
-        by_x = np.empty((*t.shape, 8), dtype=complex)
-        by_x[..., 0], by_x[..., 1] = 1.0, 1j
-        normal = 1j * line
-        by_x[..., 2] = u - turned * _dot(normal, u)
-        by_x[..., 3] = -turned * _dot(normal, e)
-        by_x[..., 4] = turned
-        by_x[..., 5] = turned * _dot(line, a * u + c * e)
-        by_x[..., 6], by_x[..., 7] = e, 1j * e
-        swing = 1j * a * u
-        return moving + z * e, by_x, swing - turned * _dot(normal, swing)
+    def _shifts(self, x: Array, reach: ComplexArray, normal: ComplexArray) -> dict[int, Any]:
+        """By offset and direction of the line."""
+        return {4: 1.0, 5: _dot(-1j * normal, reach)}
 
     @np.errstate(all="ignore")
     def cosines(self, x: Array, t: Array) -> tuple[Array, Array, Array]:

@@ -19,22 +19,24 @@ from functools import cached_property
 
 import numpy as np
 
-from linkwork.core.foundation.arrays import Array, BoolArray, IndexArray
-from linkwork.core.foundation.errors import MechanismError, Problem
+from linkwork.core.foundation.arrays import Array, IndexArray
+from linkwork.core.foundation.errors import LinkworkError, MechanismError, Problem
 from linkwork.core.foundation.loading import cores, share_out
-from linkwork.core.mechanism.varied_numbers import VariedNumber
-from linkwork.core.motion.model import Model
+from linkwork.core.mechanism.varied_numbers import VariedNumber, with_numbers
+from linkwork.core.motion.model import Model, model_of
 from linkwork.core.motion.rows_between import between_rows
+from linkwork.core.motion.sweeping import sweep
 from linkwork.core.results.motion import Motion
 from linkwork.synthesis.improvement.curves import own_inputs
-from linkwork.synthesis.improvement.exact_numbers import ExactNumbers
-from linkwork.synthesis.improvement.goals import Misses, PathGoal, goal_of
+from linkwork.synthesis.improvement.goals import Misses, NumberMisses, PathGoal, goal_of
 from linkwork.synthesis.improvement.kept_relations import Together
-from linkwork.synthesis.improvement.lanes import DesignWriter, LaneWork, SolvedLanes, inputs_away
+from linkwork.synthesis.improvement.lanes import DesignWriter, SolvedLanes, inputs_away
 from linkwork.synthesis.improvement.settings import Aid, Goal
-from linkwork.synthesis.lane_least_squares import Box, LaneFit, Residuals, minimise, starts_of
+from linkwork.synthesis.lane_least_squares import Box, LaneFit, Residuals, starts_of
+from linkwork.synthesis.lane_problems import POWERS, LaneProblem, Multipliers, largest_misses
 
 _STIFF = 10.0  # weight of limits, in spans of their objectives: their shifts converge faster
+_EQUAL = 1e-12  # relative: numbers of motions that differ less are equal
 _MARGIN = 1e-9  # of an objective's scale: by which limits hold in the end
 
 
@@ -108,8 +110,7 @@ class TradeOff:
         self.scale = scale * objectives.weights
         self.weights, self.limits = weights, limits
         self.stiffness = np.ones_like(limits)
-        self._shift = np.zeros_like(limits)
-        self._new = np.zeros_like(limits)
+        self.limited = Multipliers(*limits.shape)
 
     @property
     def has_limits(self) -> bool:
@@ -120,13 +121,14 @@ class TradeOff:
         """Weighted residuals of lanes, and those of broken limits after them."""
         rows, by_x, by_t = found.rows, found.by_x, found.by_t
         shared, shared_by_x = np.array(found.shared), np.array(found.shared_by_x)
-        broken, slopes = [], []
+        values, slopes = [], []
         for k, own in enumerate(self.objectives.columns):
             unit = self.scale[k] * np.sqrt(self.objectives.count(found, k))
             misses, slope = self.objectives.misses(found, k)
-            value, rise = self._over(k, misses / unit, slope / unit, lanes)
-            broken.append(value)
-            slopes.append(rise)
+            value = np.linalg.norm(misses / unit, axis=1)
+            along = misses / unit / np.where(value > 0.0, value, 1.0)[:, None]
+            values.append(value)
+            slopes.append(np.einsum("dn,dnp->dp", along, slope / unit))
             # eq. (169)
             factor = self.weights[lanes, k] / unit
             if own is None:
@@ -135,31 +137,17 @@ class TradeOff:
             else:
                 shared[:, own] *= factor[:, None]
                 shared_by_x[:, own] *= factor[:, None, None]
+        # eq. (155)
+        h = np.stack(values, axis=1) - self.limits[lanes] + _MARGIN
+        over, rise = self.limited.residuals(lanes, h, np.stack(slopes, axis=1))
+        stiff = _STIFF * self.stiffness[lanes]
         return Residuals(
             rows,
             by_x,
             by_t,
-            np.concatenate([shared, np.stack(broken, axis=1)], axis=1),
-            np.concatenate([shared_by_x, np.stack(slopes, axis=1)], axis=1),
+            np.concatenate([shared, stiff * over], axis=1),
+            np.concatenate([shared_by_x, stiff[:, :, None] * rise], axis=1),
         )
-
-    def _over(self, k: int, misses: Array, slope: Array, lanes: IndexArray) -> tuple[Array, Array]:
-        """How far an objective is above its limit, (D,), and by the numbers, (D, P)."""
-        limit, shift = self.limits[lanes, k], self._shift[lanes, k]
-        value = np.linalg.norm(misses, axis=1)
-        with np.errstate(invalid="ignore"):
-            # eq. (155)
-            over = np.maximum(0.0, value - limit + _MARGIN + shift)
-        self._new[lanes, k] = np.nan_to_num(over)
-        unit = misses / np.where(value > 0.0, value, 1.0)[:, None]
-        rise = np.einsum("dn,dnp->dp", unit, slope)
-        active, stiff = (over > 0.0)[:, None], _STIFF * self.stiffness[lanes, k]
-        # no number where there is no position
-        return stiff * over, stiff[:, None] * np.where(active, rise, 0.0)
-
-    def update(self, lanes: IndexArray) -> None:
-        """New shifts for lanes that were evaluated."""
-        self._shift[lanes] = self._new[lanes]
 
 
 def told_apart(names: Sequence[str]) -> tuple[str, ...]:
@@ -167,60 +155,6 @@ def told_apart(names: Sequence[str]) -> tuple[str, ...]:
     return tuple(
         name if name not in names[:k] else f"{name} ({1 + list(names[:k]).count(name)})"
         for k, name in enumerate(names)
-    )
-
-
-# ----------------------------------------------------------------------
-# The largest miss, minimised as the limit of sums of growing powers.
-#
-# Least squares of residuals f |f|^(k-1) minimise the sum of |f|^(2k), eq. (158). Each power begins
-# at the solution of the one before. The largest of N misses is then above the least possible by a
-# factor N^(1/2k) at most.
-#
-# References
-# ----------
-# G. Pólya, Sur un algorithme toujours convergent pour obtenir les polynomes de meilleure
-# approximation de Tchebycheff, Comptes Rendus 157 (1913) 840-843.
-
-
-#: Powers k in their order.
-POWERS = (2, 4, 8, 16, 32, 64, 128, 256, 512)
-
-
-def largest_misses(found: Residuals, counted: BoolArray) -> Array:
-    """The largest distance or counted shared residual of lanes, (D,)."""
-    rows = np.sqrt(np.einsum("dnm,dnm->dn", found.rows, found.rows))
-    every = np.concatenate([rows, np.abs(found.shared[:, counted])], axis=1)
-    return np.asarray(every.max(axis=1, initial=0.0))
-
-
-@np.errstate(all="ignore")  # lanes without residuals stay without
-def powered(found: Residuals, power: int, largest: Array, counted: BoolArray) -> Residuals:
-    """Residuals of powers, relative to the largest miss (D,) at the begin of their round.
-
-    ``counted`` (K,): the shared residuals that are misses; the others, broken bounds, stay.
-    """
-    scale = largest[:, None]
-    size = np.sqrt(np.einsum("dnm,dnm->dn", found.rows, found.rows))
-    factor = (size / scale) ** (power - 1) / scale
-    unit = found.rows / np.where(size > 0.0, size, 1.0)[:, :, None]
-
-    def bent(slope: Array) -> Array:
-        # eq. (158): |f|^(k-1) (I + (k - 1) u uᵀ) df
-        along = np.einsum("dnm,dnm...->dn...", unit, slope)
-        turned = np.einsum("dnm,dn...->dnm...", unit, along)
-        whole = slope + (power - 1) * turned
-        return np.asarray(factor.reshape(*factor.shape, *[1] * (slope.ndim - 2)) * whole)
-
-    shared, by_x = found.shared / scale, found.shared_by_x / scale[:, :, None]
-    own = np.where(counted, np.abs(shared) ** (power - 1), 1.0)
-    slope = np.where(counted, power * own, 1.0)
-    return Residuals(
-        found.rows * factor[:, :, None],
-        bent(found.by_x),
-        None if found.by_t is None else bent(found.by_t),
-        shared * own,
-        by_x * slope[:, :, None],
     )
 
 
@@ -305,7 +239,7 @@ class Fitting:
         return x if self.together is None else self.together.numbers(x)
 
 
-class FitProblem:
+class FitProblem(LaneProblem):
     """Residuals of all goals, for lanes of designs.
 
     Parameters
@@ -315,8 +249,6 @@ class FitProblem:
 
     Attributes
     ----------
-    power : int
-        Of the misses, for the largest one, see :mod:`~linkwork.synthesis.improvement.fit_problem`.
     trade : TradeOff, optional
         Weights and limits of objectives; ``None``: the sum of all.
     moved, missed : (K,)
@@ -325,8 +257,7 @@ class FitProblem:
 
     def __init__(self, given: Fitting, lanes: int) -> None:
         self.given, model, motion, path = given, given.model, given.motion, given.path
-        self.model, self.motion = model, motion
-        self.box, self.path, self.lanes = given.box, path, lanes
+        self.model, self.motion, self.path = model, motion, path
         self.numbers = np.array([float(q.of(model.description)) for q in given.numbers])
         self.x = self.numbers if given.together is None else given.together.sizes
         lead = next(iter(motion.inputs))
@@ -334,34 +265,41 @@ class FitProblem:
         # limits between the rows of the table move with the numbers
         table = (np.asarray(motion.inputs[lead]) * scale)[motion.asked]
         there = np.asarray(motion.found[motion.asked])
-        self.own_variables = own_inputs(path, model, table)
         self.writer = DesignWriter(model, given.numbers)
         self.goals = [goal_of(model, goal, table, there, scale) for goal in given.goals]
-        self.points = None if path is None else self._rows(path.inputs)
-        # goals of the same rows share their positions
-        self.rows: dict[bytes, SolvedLanes] = {}
-        for misses in self.goals:
-            if misses.at.tobytes() not in self.rows:
-                self.rows[misses.at.tobytes()] = self._rows(misses.at)
-        own = given.numbers, self.goals, self.rows
-        self.exact = ExactNumbers(self.writer, *own, there, lanes)
-        self.shifts = [np.zeros((2, lanes, misses.count)) for misses in self.goals]
-        self.new_shifts = [np.zeros_like(shift) for shift in self.shifts]
-        self.power, self.largest = 1, np.ones(lanes)
-        self.trade: TradeOff | None = None
         # of the shared residuals, those that are no bounds
-        self.counted = np.concatenate(
-            [np.zeros(0, bool), *(np.full(m.count, not m.is_bound) for m in self.goals)]
+        counted = [np.full(misses.count, not misses.is_bound) for misses in self.goals]
+        # goals of the same rows share their positions
+        tables = {misses.at.tobytes(): misses.at for misses in self.goals}
+        paths = [] if path is None else [path.inputs]
+        super().__init__(
+            given.box,
+            own_inputs(path, model, table),
+            lanes,
+            sum(map(len, [*paths, *tables.values()])),
+            np.concatenate([np.zeros(0, bool), *counted]),
         )
-        self.work = LaneWork(sum(len(solved.rows_at) for solved in self._solvers))
+        self.points = None if path is None else self._rows(path.inputs)
+        self.rows = {key: self._rows(at) for key, at in tables.items()}
+        self._there = there
+        #: How much the numbers of a fit are above the exact ones, for each goal (K, lanes).
+        self.errors = np.zeros((len(self.goals), lanes))
+        self.bounds = self._new_bounds()
+        self.trade: TradeOff | None = None
         self._reached = np.zeros(lanes, dtype=bool)
         self.moved, self.missed = np.full((2, len(self.goals)), np.nan)
 
+    def _new_bounds(self) -> list[Multipliers | None]:
+        return [
+            Multipliers(self.lanes, 2, misses.count) if misses.is_bound else None
+            for misses in self.goals
+        ]
+
     @property
-    def has_bounds(self) -> bool:
-        """Whether a goal is a bound, or an objective has a limit."""
-        limited = self.trade is not None and self.trade.has_limits
-        return limited or any(misses.is_bound for misses in self.goals)
+    def multipliers(self) -> list[Multipliers]:
+        """Those of goals that are bounds, and of limits of objectives."""
+        limits = [self.trade.limited] if self.trade is not None and self.trade.has_limits else []
+        return [*limits, *(own for own in self.bounds if own is not None)]
 
     @cached_property
     def objectives(self) -> Objectives:
@@ -398,7 +336,7 @@ class FitProblem:
             getattr(fit, name)[to] = getattr(fit, name)[of]
         for solved in self._solvers:
             solved.copy_lanes(of, to)
-        self.exact.errors[:, to] = self.exact.errors[:, of]
+        self.errors[:, to] = self.errors[:, of]
         self._reached[to] = True
 
     def _rows(self, at: Array) -> SolvedLanes:
@@ -460,48 +398,19 @@ class FitProblem:
             total = self.evaluate(begin + (end - begin) * (part / APPROACH), t, lanes).total
         return total
 
-    def further(self, fit: LaneFit, keep: IndexArray, steps: int) -> LaneFit:
-        """Some lanes after more steps."""
-        found: list[tuple[IndexArray, LaneFit]] = []
-
-        def work(own: IndexArray, count: Callable[[], None]) -> None:
-            start = fit.take(own)
-            if not self._reached[own].all():
-                start = replace(start, total=self._reach(start, own, count))
-                found.append((own, start))
-            for solved in self._solvers:
-                # sums of an earlier round are no measure of this one
-                solved.total[own] = np.inf
-            if self.power > 1:
-                now = self.evaluate(start.x, start.t, own, power=1)
-                self.largest[own] = np.maximum(largest_misses(now, self.counted), 1e-300)
-
-            def evaluate(x: Array, t: Array, lanes: IndexArray) -> Residuals:
-                count()
-                return self.evaluate(x, t, own[lanes])
-
-            after = minimise(evaluate, start, self.box, steps, own=self.own_variables)
-            found.append((own, after))
-            if after.interrupted:
-                raise KeyboardInterrupt
-            if self.has_bounds:
-                self.evaluate(after.x, after.t, own)
-                for shift, new in zip(self.shifts, self.new_shifts, strict=True):
-                    shift[:, own] = new[:, own]
-                if self.trade is not None:
-                    self.trade.update(own)
-
-        self.work.share(keep, steps, work)
-        every = fit.take(np.arange(len(fit)))
-        for own, after in found:
-            every.put(own, after)
-        return replace(every, interrupted=self.work.stopped)
+    def prepare(self, fit: LaneFit, lanes: IndexArray, count: Callable[[], None]) -> LaneFit:
+        """Lanes that are reached, if they were not before."""
+        if not self._reached[lanes].all():
+            fit = replace(fit, total=self._reach(fit, lanes, count))
+        for solved in self._solvers:
+            # sums of an earlier round are no measure of this one
+            solved.total[lanes] = np.inf
+        return fit
 
     def evaluate(
         self, x: Array, t: Array, lanes: IndexArray, power: int | None = None
     ) -> Residuals:
         """All misses of designs (D, P); NaN for those of other equations."""
-        power = power or self.power
         x = self.given.all_numbers(x)
         count, parameters = x.shape
         rows, by_x = np.zeros((count, 0, 2)), np.zeros((count, 0, 2, parameters))
@@ -522,9 +431,8 @@ class FitProblem:
             kept.append((solved, positions[key], at))
         shared, shared_by_x = [np.zeros((count, 0))], [np.zeros((count, 0, parameters))]
         for k, misses in enumerate(self.goals):
-            given = self.exact.errors[k, lanes], self.shifts[k][:, lanes]
-            own, slopes, new = misses.of(positions[misses.at.tobytes()], *given)
-            self.new_shifts[k][:, lanes] = new
+            given = positions[misses.at.tobytes()], self.errors[k, lanes], self.bounds[k], lanes
+            own, slopes = misses.of(*given)
             if not self.moved[k] > 0.0 and (there := np.isfinite(own)).any():
                 self.moved[k] = float(np.abs(slopes[there]).max())
                 self.missed[k] = float(np.abs(own[there]).max())
@@ -536,23 +444,55 @@ class FitProblem:
         result = Residuals(rows, by_x, by_t, np.concatenate(shared, axis=1), slopes)
         if self.trade is not None:
             result = self.trade.applied(result, lanes)
-        if power > 1:
-            result = powered(result, power, self.largest[lanes], self.counted)
+        result = self.raised(result, lanes, power)
         for solver, found, at in kept:
             solver.keep(found, x, at, lanes, result.total)
         return result
 
     def correct(self, fit: LaneFit, lanes: IndexArray) -> IndexArray:
-        """Make goals of numbers of the motion exact; the lanes in which they were not."""
-        known = lanes[np.isfinite(fit.total[lanes])]
-        parts = self.work.parts(known) if len(known) else []
-        return self.exact.correct(self.given.all_numbers(fit.x), parts)
+        """Take the errors of polynomials off numbers of the motion; the lanes with other errors.
+
+        Errors are measured on the motions of designs: a deferred correction. A design without all
+        rows of the mechanism keeps its error.
+        """
+        goals = {k: own for k, own in enumerate(self.goals) if isinstance(own, NumberMisses)}
+        changed: list[int] = []
+        known = lanes[np.isfinite(fit.total[lanes])] if goals else lanes[:0]
+        for part in self.work.parts(known) if len(known) else ():
+            x = self.given.all_numbers(fit.x[part])
+            designs = self.writer.written(x)
+            values = []
+            for goal in goals.values():
+                at = np.broadcast_to(goal.at, (len(part), len(goal.at)))
+                found = self.rows[goal.at.tobytes()].at(designs, at, part)
+                values.append(goal.values(found)[0][:, 0])
+            for d, lane in enumerate(part.tolist()):
+                motion = self._motion(x[d])
+                if motion is None:
+                    continue
+                exact = np.array([goal.exact(motion) for goal in goals.values()])
+                error = np.array([value[d] for value in values]) - exact
+                error[np.isnan(error)] = 0.0
+                away = np.abs(error - self.errors[[*goals], lane])
+                self.errors[[*goals], lane] = error
+                if not (away <= _EQUAL * np.abs(exact)).all():
+                    changed.append(lane)
+        return np.array(changed, dtype=np.intp)
+
+    def _motion(self, x: Array) -> Motion | None:
+        """The motion of a design, if it has all rows that the mechanism has."""
+        new = dict(zip(self.given.numbers, x.tolist(), strict=True))
+        try:
+            model = model_of(with_numbers(self.model.description, new))
+            motion = sweep(model, certify=False)
+        except LinkworkError:
+            return None
+        return motion if motion.found[motion.asked][self._there].all() else None
 
     def measured(self, fit: LaneFit, lanes: IndexArray) -> Residuals:
         """The misses of lanes without powers, weights and shifts."""
-        kept = self.power, self.trade, self.shifts
-        self.power, self.trade = 1, None
-        self.shifts = [np.zeros_like(shift) for shift in self.shifts]
+        kept = self.power, self.trade, self.bounds
+        self.power, self.trade, self.bounds = 1, None, self._new_bounds()
         for solved in self._solvers:
             solved.total[lanes] = np.inf
         parts = self.work.parts(lanes)
@@ -562,7 +502,7 @@ class FitProblem:
             found[k] = self.evaluate(fit.x[parts[k]], fit.t[parts[k]], parts[k])
 
         share_out(measure, range(len(parts)), cores())
-        self.power, self.trade, self.shifts = kept
+        self.power, self.trade, self.bounds = kept
         return Residuals.joined([found[k] for k in range(len(parts))])
 
     def result(self, fit: LaneFit, most: int | None = None) -> FittedNumbers:
@@ -661,14 +601,14 @@ def fit_numbers(
         For goals that are not known, or whose derivatives are not known.
     """
     problem = FitProblem(given, len(starts))
-    rounds = [(1, steps) for steps in (_BOUND_STEPS if problem.has_bounds else _STEPS)]
+    rounds = [(1, steps) for steps in (_BOUND_STEPS if problem.multipliers else _STEPS)]
     rounds += [(power, _POWER_STEPS) for power in (POWERS if minimax else ())]
     problem.work.tell, problem.work.whole = progress, sum(steps for _, steps in rounds)
     fit = problem.begun(starts)
     for k, (power, steps) in enumerate(rounds):
         problem.power = power
         # sums of other powers and shifts say nothing of this round
-        changed = power > 1 or problem.has_bounds
+        changed = power > 1 or problem.multipliers
         left = np.flatnonzero(np.isfinite(fit.total) if k and changed else ~fit.done | (k == 0))
         # of many lanes only the better half goes on
         most = len(starts) if len(starts) <= _ALL or not k else len(starts) // 2

@@ -223,7 +223,7 @@ class _Front:
             self.trade.weights[self.alone] = other
             self.trade.weights[self.alone, own] = 1.0
             self._run(self.alone, (_STEPS,))
-        if self.problem.has_bounds:
+        if self.problem.multipliers:
             self._run(self.alone, _ROUNDS)
 
     def weigh(self) -> None:
@@ -242,7 +242,7 @@ class _Front:
         # squares of large objectives with small spans would outweigh bounds
         smaller = float(np.min(spans / np.maximum(spans, front.max(axis=0))))
         self.trade.weights[lanes] = np.array(weights) * (smaller * self.trade.units / spans)
-        self._run(lanes, _ROUNDS if self.problem.has_bounds else (2 * _STEPS,))
+        self._run(lanes, _ROUNDS if self.problem.multipliers else (2 * _STEPS,))
 
     def limit(self) -> None:
         """One objective with limits of the others."""

@@ -14,7 +14,7 @@ import numpy as np
 from linkwork.core.expression.derivatives import Jet, evaluate
 from linkwork.core.expression.grammar import CONSTANTS, parse
 from linkwork.core.expression.tree import Node, names_in
-from linkwork.core.foundation.arrays import AnyArray, Array, BoolArray, ComplexArray
+from linkwork.core.foundation.arrays import AnyArray, Array, BoolArray, ComplexArray, IndexArray
 from linkwork.core.foundation.errors import InputError, UnknownNameError
 from linkwork.core.foundation.rounding import EQUAL_ROWS
 from linkwork.core.foundation.units import FULL_TURN
@@ -28,6 +28,7 @@ from linkwork.design.sensitivity import LIMITS
 from linkwork.families.located_extremes import interpolated_extremes, parts_of, step_of
 from linkwork.synthesis.improvement.lanes import LanePositions
 from linkwork.synthesis.improvement.settings import Goal
+from linkwork.synthesis.lane_problems import Multipliers
 
 _SAFE = 1.5  # fifth differences are known at some rows only
 _NEWTON = 3  # steps to an extreme of the quartic from that of the parabola
@@ -210,29 +211,27 @@ class Misses(ABC):
         return np.where(away > _NONE * _margin(np.array([least, most])), away, 0.0)
 
     @np.errstate(all="ignore")  # where there is no position there is no number
-    def of(self, found: LanePositions, error: Array, shift: Array) -> tuple[Array, Array, Array]:
-        """Weighted misses (D, K) of values less their error (D,), by the numbers, and the new
-        shifts of the bounds, (2, D, K).
+    def of(
+        self, found: LanePositions, error: Array, bound: Multipliers | None, lanes: IndexArray
+    ) -> tuple[Array, Array]:
+        """Weighted misses (D, K) of values less their error (D,), and by the numbers.
+
+        ``bound``: the multipliers (lanes, 2, K) of a goal that is one.
         """
         (value, by_x), goal = self.values(found), self.goal
         value = value - error[:, None]
-        if not self.is_bound:
+        if bound is None:
             wanted: Any = np.array(goal.values) if goal.values else goal.target
             away = value - wanted
             if self.turn:
                 away = np.mod(away + 0.5 * self.turn, self.turn) - 0.5 * self.turn
-            return goal.weight * away, goal.weight * by_x, shift
-        low, high = np.zeros_like(value), np.zeros_like(value)
-        # eq. (155)
-        if goal.least is not None:
-            low = np.minimum(0.0, value - _above(goal.least) - shift[0])
-        if goal.most is not None:
-            high = np.maximum(0.0, value + _above(-goal.most) + shift[1])
-        away = low + high + 0.0 * value  # no number where there is no position
-        broken = (away != 0.0)[:, :, None]
-        new = np.nan_to_num(np.stack([-low, high]))
+            return goal.weight * away, goal.weight * by_x
+        least = -np.inf if goal.least is None else _above(goal.least)
+        most = -np.inf if goal.most is None else _above(-goal.most)
+        (beyond,) = bound.residuals(lanes, np.stack([least - value, value + most], axis=1))
+        away = beyond[:, 1] - beyond[:, 0]
         weight = _STIFF * goal.weight
-        return weight * away, weight * np.where(broken, by_x, 0.0), new
+        return weight * away, weight * np.where((away != 0.0)[:, :, None], by_x, 0.0)
 
 
 def _above(bound: float) -> float:

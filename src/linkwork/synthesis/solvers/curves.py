@@ -7,7 +7,6 @@ from collections.abc import Callable, Iterator, Mapping
 
 import numpy as np
 
-from linkwork.core.foundation.loading import cores
 from linkwork.core.foundation.rounding import UNIT_ROUNDOFF
 from linkwork.core.foundation.statuses import Completeness
 from linkwork.core.foundation.units import FULL_TURN, arc_in_order
@@ -69,7 +68,7 @@ def solve_curve(task: Task, wishes: Wishes, progress: Callable[[float], None] | 
             if progress is not None:
                 progress((done + fraction) / len(kinds))
 
-        fitted.append(fit_curve(kind, goal, starts, rng, tell, cores()))
+        fitted.append(fit_curve(kind, goal, starts, rng, tell))
         if not fitted[-1].finished:
             break
     count, usual = sum(map(len, fitted)), usual_longest(task)

@@ -256,6 +256,8 @@ def _fitted(
     found = _found(task, made, complete=0, zeros=tuple(zeros))
     told = f"1 {goal.fit} fit" if len(made) == 1 else f"{len(made)} different {goal.fit} fits"
     message = f"a sample: {told} from {len(x)} starts"
+    if fits.interrupted:
+        message = f"interrupted: the best so far of {len(x)} starts"
     if not made:
         message = "nothing found: no loop through three of the pairs follows all of them"
     if fits.minimal.any():
@@ -265,7 +267,7 @@ def _fitted(
     if usual:
         of = "the shortest and the size of the output" if slides else "the shortest"
         message += f"; lengths up to {USUAL_RATIO:g} times {of} unless [wanted] bounds them"
-    return replace(found, message=message, starts=len(x))
+    return replace(found, message=message, starts=len(x), interrupted=fits.interrupted)
 
 
 def has_usual_ratio(task: Task) -> bool:

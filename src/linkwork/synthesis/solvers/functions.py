@@ -12,8 +12,8 @@ from linkwork.core.foundation.rounding import EPSILON
 from linkwork.core.foundation.units import FULL_TURN
 from linkwork.synthesis.improvement.curve_fit import CurveConstraints
 from linkwork.synthesis.improvement.curves import CurveGoal, FourBarCurves, SliderCrankCurves
-from linkwork.synthesis.improvement.fit_problem import POWERS, largest_misses, powered
-from linkwork.synthesis.lane_least_squares import Box, LaneFit, Residuals, minimise, starts_of
+from linkwork.synthesis.lane_least_squares import Box, OwnVariables, Residuals, starts_of
+from linkwork.synthesis.lane_problems import POWERS, LaneProblem, Multipliers, different
 from linkwork.synthesis.loops.limits import dot
 from linkwork.synthesis.tasks.conditions import Wishes
 
@@ -125,8 +125,7 @@ _MARGIN = 1e-4  # of lengths, relatively: what multipliers leave
 class FunctionWishes:
     """The constraints of D lanes, which have crank, rocker or offset, coupler, and both starts.
 
-    ``u`` (N,): inputs [rad]; ``size``: of lengths, 1 with a four-bar's ground; ``weights``: those
-    of rounds, none without wishes.
+    ``u`` (N,): inputs [rad]; ``size``: of lengths, 1 with a four-bar's ground.
     """
 
     def __init__(self, wishes: Wishes, u: Array, size: float, slides: bool, lanes: int) -> None:
@@ -147,8 +146,7 @@ class FunctionWishes:
         )
         self.constraints = CurveConstraints(self.kind, goal, lanes)
         wanted = asked or goal.transmission or goal.shortest
-        wanted = wanted or min(goal.longest, goal.ratio) < np.inf
-        self.weights = (10.0, 30.0, 30.0, 100.0, 100.0) if wanted else ()
+        self.is_wanted = bool(wanted or min(goal.longest, goal.ratio) < np.inf)
 
     def _loops(self, x: Array) -> tuple[Array, Array, Array]:
         """Dimensions (D, P) of the same loops as curves, signs of theirs here, and the angles of
@@ -169,7 +167,7 @@ class FunctionWishes:
 
     def broken(self, x: Array, lanes: IndexArray) -> tuple[Array, Array]:
         """How far wishes are broken, (D, K), and by the parameters, (D, K, 5)."""
-        if not self.weights:
+        if not self.is_wanted:
             return np.zeros((len(x), 0)), np.zeros((len(x), 0, 5))
         loops, signs, angles = self._loops(x)
         h, slope = self.constraints.residuals(loops, lanes)
@@ -180,12 +178,6 @@ class FunctionWishes:
             by_start = np.append(by_start, 0.0 * found[2] if self.range else found[2], axis=1)
         by_x = slope[:, :, self.columns] * signs[:, None]
         return h, np.concatenate([by_x, by_start[:, :, None], 0.0 * h[:, :, None]], axis=2)
-
-    def update(self, x: Array, weight: float) -> None:
-        """New multipliers for all lanes at x, and the next weight."""
-        loops, _, angles = self._loops(x)
-        self.constraints.update(loops, angles, np.zeros(2, dtype=complex), np.arange(len(x)))
-        self.constraints.weigh(weight)
 
 
 # ----------------------------------------------------------------------
@@ -198,6 +190,7 @@ class FunctionWishes:
 
 
 _STEPS, _POWER_STEPS = 150, 40
+_WEIGHTS = (10.0, 30.0, 30.0, 100.0, 100.0)  # of wishes, round by round
 _LANES = 120  # of the starts, those with the smallest sums of squares
 _KEPT = 24  # lanes that minimise the largest miss
 _FAR = 1e3  # ratios of lengths
@@ -223,6 +216,8 @@ class FunctionFits:
         Whether a loop closes with some transmission angle, or its fit is proved to be minimal.
     minimal : (D,)
         Whether a fit is proved to be a local minimum of the largest error, to first order.
+    interrupted : bool
+        Whether the user stopped the fit, which keeps the best so far.
     """
 
     x: Array
@@ -230,14 +225,24 @@ class FunctionFits:
     wrong: Array
     closes: BoolArray
     minimal: BoolArray
+    interrupted: bool = False
 
 
-class _Lanes:
+class _FunctionProblem(LaneProblem):
     """Structural errors of lanes."""
 
-    def __init__(self, u: Array, v: Array, slides: bool, side: Array, held: Held) -> None:
+    most_lanes = 128
+
+    def __init__(self, u: Array, v: Array, slides: bool, side: Array, held: Held, box: Box) -> None:
         self.u, self.v, self.side, self.wishes = u, v, side, held(len(side))
         self.make = slider_errors if slides else rocker_errors
+        none = np.zeros(self.wishes.broken(np.ones((0, 5)), np.arange(0))[0].shape[1], dtype=bool)
+        super().__init__(box, OwnVariables(), len(side), len(u), none)
+
+    @property
+    def multipliers(self) -> list[Multipliers]:
+        """Those of wishes."""
+        return self.wishes.constraints.multipliers if self.wishes.is_wanted else []
 
     def errors(self, x: Array, lanes: IndexArray) -> tuple[Array, Array]:
         """Errors (D, N) and their derivatives (D, N, 5)."""
@@ -246,11 +251,14 @@ class _Lanes:
         wrong, by_x = made(x[:, :3].T[:, :, None])
         return wrong, np.concatenate([by_x, np.full((*wrong.shape, 1), -1.0)], axis=2)
 
-    def residuals(self, x: Array, _t: Array, lanes: IndexArray) -> Residuals:
-        """Errors as rows of one number."""
+    def evaluate(
+        self, x: Array, t: Array, lanes: IndexArray, power: int | None = None
+    ) -> Residuals:
+        """Errors as rows of one number, and broken wishes."""
         wrong, by_x = self.errors(x, lanes)
         broken = self.wishes.broken(x, lanes)
-        return Residuals(wrong[:, :, None], by_x[:, :, None], None, *broken)
+        found = Residuals(wrong[:, :, None], by_x[:, :, None], None, *broken)
+        return self.raised(found, lanes, power)
 
 
 def fit_functions(
@@ -277,22 +285,31 @@ def fit_functions(
     if first is not None and np.isfinite(sum(first)):
         # whole turns that bring starts nearest to their bounds
         x[:, 3] += FULL_TURN * np.round((0.5 * sum(first) - x[:, 3]) / FULL_TURN)
-    lanes, x = _Lanes(u, v, slides, side, held), box.inside(x)
+    x = box.inside(x)
+
+    def problem_of(side: Array) -> _FunctionProblem:
+        return _FunctionProblem(u, v, slides, side, held, box)
+
+    lanes = problem_of(side)
     wrong = lanes.errors(x, np.arange(len(x)))[0]
     if not np.isfinite(wrong).all(axis=1).any():
         none = np.zeros(0, dtype=bool)
         return FunctionFits(x=x[:0], side=side[:0], wrong=wrong[:0], closes=none, minimal=none)
-    total = lanes.residuals(x, x[:, :0], np.arange(len(x))).total
+    total = lanes.evaluate(x, x[:, :0], np.arange(len(x))).total
     some = np.argsort(total, kind="stable")[: min(_LANES, int(np.isfinite(total).sum()))]
-    lanes, side = _Lanes(u, v, slides, side[some], held), side[some]
-    fit = minimise(lanes.residuals, starts_of(x[some], np.zeros((len(some), 0))), box, _STEPS)
-    for weight in lanes.wishes.weights:
-        lanes.wishes.update(fit.x, weight)
-        fit = minimise(lanes.residuals, fit, box, _POWER_STEPS)
+    lanes, side = problem_of(side[some]), side[some]
+    every = np.arange(len(some))
+    fit = lanes.further(starts_of(x[some], np.zeros((len(some), 0))), every, _STEPS)
+    for weight in _WEIGHTS if lanes.multipliers else ():
+        lanes.weigh(weight)
+        fit = lanes.further(fit, every, _POWER_STEPS)
     order = _different(fit.x, fit.total)[:_KEPT]
-    lanes, fit, side = _Lanes(u, v, slides, side[order], held), fit.take(order), side[order]
-    if minimax:
-        fit = _level(lanes, fit, box, progress)
+    lanes, fit, side = problem_of(side[order]), fit.take(order), side[order]
+    powers = (*POWERS, *POWERS[-1:] * (len(_WEIGHTS) if lanes.multipliers else 0))
+    lanes.work.tell, lanes.work.whole = progress, len(powers) * _POWER_STEPS
+    for lanes.power in powers if minimax and not fit.interrupted else ():
+        fit = lanes.further(fit, np.arange(len(fit)), _POWER_STEPS)
+        lanes.weigh(_WEIGHTS[-1])
     x, minimal = fit.x.copy(), np.zeros(len(fit), dtype=bool)
     for k in range(len(fit)) if minimax else ():
         sharp, least = _sharpened(lanes, x[k], k, box)
@@ -305,32 +322,8 @@ def fit_functions(
     index = index[closes[index] | (np.arange(len(index)) == 0)]
     return FunctionFits(
         x=x[index], side=side[index], wrong=wrong[index], closes=closes[index],
-        minimal=minimal[index],
+        minimal=minimal[index], interrupted=fit.interrupted,
     )  # fmt: skip
-
-
-def _level(
-    lanes: _Lanes, fit: LaneFit, box: Box, progress: Callable[[float], None] | None
-) -> LaneFit:
-    """Lanes with small largest errors, by growing powers."""
-    every = np.arange(len(fit))
-    none = np.zeros(lanes.residuals(fit.x, fit.t, every).shared.shape[1], dtype=bool)
-    powers = (*POWERS, *POWERS[-1:] * len(lanes.wishes.weights))
-    for k, power in enumerate(powers):
-        if progress is not None:
-            progress(k / len(powers))
-        largest = largest_misses(lanes.residuals(fit.x, fit.t, every), none)
-
-        def raised(
-            x: Array, t: Array, which: IndexArray, power: int = power, scale: Array = largest
-        ) -> Residuals:
-            found = lanes.residuals(x, t, which)
-            return powered(found, power, np.maximum(scale[which], 1e-300), none)
-
-        fit = minimise(raised, fit, box, _POWER_STEPS)
-        for weight in lanes.wishes.weights[-1:]:
-            lanes.wishes.update(fit.x, weight)
-    return fit
 
 
 def _box(size: float, slides: bool, first: tuple[float, float] | None) -> Box:
@@ -360,15 +353,15 @@ def _closes(x: Array, u: Array, slides: bool) -> BoolArray:
 
 def _different(x: Array, measure: Array) -> IndexArray:
     """Lanes with different lengths by rising measure, without those that have none."""
-    chosen: list[int] = []
-    for k in np.argsort(measure, kind="stable"):
-        alike = np.abs(x[chosen, :3] - x[k, :3]).max(axis=1) <= _ALIKE * np.abs(x[k, :3]).max()
-        if np.isfinite(measure[k]) and not alike.any():
-            chosen.append(int(k))
-    return np.array(chosen, dtype=np.intp)
+
+    def alike(chosen: list[int], k: int) -> BoolArray:
+        apart = np.abs(x[chosen, :3] - x[k, :3]).max(axis=1)
+        return np.asarray(apart <= _ALIKE * np.abs(x[k, :3]).max())
+
+    return different(measure, alike)
 
 
-def _sharpened(lanes: _Lanes, x: Array, k: int, box: Box) -> tuple[Array, bool]:
+def _sharpened(lanes: _FunctionProblem, x: Array, k: int, box: Box) -> tuple[Array, bool]:
     """A fit whose largest errors are made equal, if that lowers them, and whether it is minimal;
     numbers at their bounds stay there.
     """

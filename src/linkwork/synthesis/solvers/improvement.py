@@ -35,7 +35,7 @@ from linkwork.synthesis.improvement.kept_relations import STARTS
 from linkwork.synthesis.improvement.proved_design import ImprovedDesign
 from linkwork.synthesis.improvement.settings import Goal, Improvement, Points, Problems
 from linkwork.synthesis.improvement.whole_motion import Reach
-from linkwork.synthesis.solvers.improved_mechanism import ImprovedMechanism
+from linkwork.synthesis.solvers.swept_design import SweptDesign
 from linkwork.synthesis.tasks.conditions import Wishes, outside_range
 from linkwork.synthesis.tasks.task import Task
 
@@ -47,7 +47,7 @@ _PARTS = 100  # of a range of lengths
 
 def improve_mechanism(
     task: Task, wishes: Wishes, progress: Callable[[float], None] | None
-) -> tuple[tuple[ImprovedMechanism, ...], int, bool]:
+) -> tuple[tuple[SweptDesign, ...], int, bool]:
     """Designs that are not ranked yet, the number of starts, and whether they were interrupted.
 
     Raises
@@ -76,7 +76,7 @@ def improve_description(
     task: Task,
     wishes: Wishes,
     progress: Callable[[float], None] | None,
-) -> tuple[tuple[ImprovedMechanism, ...], int, bool]:
+) -> tuple[tuple[SweptDesign, ...], int, bool]:
     """The same for a mechanism that is at hand.
 
     Raises
@@ -109,8 +109,8 @@ def improve_description(
         goals.append(points)
     task.refuse((("improve", *key), told) for key, told in settings.front_problems(goals))
 
-    def judged(design: ImprovedDesign) -> ImprovedMechanism:
-        return ImprovedMechanism(task=task, improved=design, wishes=wishes)
+    def judged(design: ImprovedDesign) -> SweptDesign:
+        return SweptDesign(task=task, swept=lambda: design, wishes=wishes)
 
     try:
         found = improved_designs(

@@ -117,7 +117,7 @@ class JudgedDesigns:
 
 
 @internal("group", "index", "drive", "design")
-@dataclass(frozen=True, kw_only=True, eq=False)
+@dataclass(frozen=True, kw_only=True, eq=False, repr=False)
 class SynthesizedDesign(JudgedDesign):
     """One design of a loop with its verdict.
 
@@ -140,11 +140,6 @@ class SynthesizedDesign(JudgedDesign):
     group: JudgedDesigns
     index: int
 
-    def __repr__(self) -> str:
-        found = ", ".join(kind.value for kind in self.kinds) or "sound"
-        kind, drive = self.group.given.kind.value, self.drive.value
-        return f"<SynthesizedDesign {self.number}: {kind} driven at {drive}, {found}>"
-
     @property
     def drive(self) -> Drive:
         """The driven link."""
@@ -159,11 +154,6 @@ class SynthesizedDesign(JudgedDesign):
     def mechanism(self) -> str:
         """The kind of mechanism."""
         return self.group.given.kind.value
-
-    @property
-    def numbers(self) -> dict[str, float]:
-        """The numbers that vary; none, since all of them are found."""
-        return {}
 
     @property
     def points(self) -> dict[str, complex]:
@@ -233,11 +223,6 @@ class SynthesizedDesign(JudgedDesign):
         values = self.design.inputs
         return tuple(map(self.task.angle.from_radians, values)) if self.drive.turns else values
 
-    @property
-    def first_input(self) -> float:
-        """The input at the first position [file units]."""
-        return self.inputs[0]
-
     @cached_property
     def linkage(self) -> Linkage:
         """The mechanism, with the name of its design."""
@@ -265,7 +250,7 @@ class Synthesis:
     dyads : tuple of Dyad
     designs : tuple of JudgedDesign
         Every mechanism with every driven link, each a SynthesizedDesign: sound ones by score, then
-        refused ones. Of ``task = "improve"`` each is an ImprovedMechanism.
+        refused ones. Of ``task = "improve"`` and of six-bars each is a SweptDesign.
     starts : int
         Starts of a least-squares fit; 0 where equations are solved.
     interrupted : bool

@@ -29,7 +29,6 @@ from linkwork.synthesis.solvers.function_synthesis import (
     has_usual_ratio,
     solve_function,
 )
-from linkwork.synthesis.solvers.improved_mechanism import SweptDesign, wishes_in_motion
 from linkwork.synthesis.solvers.improvement import improve_mechanism
 from linkwork.synthesis.solvers.motions import solve_motion
 from linkwork.synthesis.solvers.paths import solve_path
@@ -42,6 +41,7 @@ from linkwork.synthesis.solvers.result import (
     goal_misses,
     relative_misses,
 )
+from linkwork.synthesis.solvers.swept_design import SweptDesign, wishes_in_motion
 from linkwork.synthesis.solvers.watt import solve_watt
 from linkwork.synthesis.tasks.conditions import Wanted, Wishes
 from linkwork.synthesis.tasks.function_goal import FunctionGoal
@@ -282,7 +282,7 @@ SOLVERS: dict[str, Solver] = {
     "function": solve_function,
 }
 _RIGHT = math.pi / 2.0
-_Alone = TypeVar("_Alone", bound=JudgedDesign)
+_Design = TypeVar("_Design", bound=JudgedDesign)
 
 
 def solve_task(task: Task, *, progress: Callable[[float], None] | None = None) -> Synthesis:
@@ -318,17 +318,25 @@ def _of_loops(task: Task, progress: Callable[[float], None] | None = None) -> Sy
         for drive in part.drives
         if drive in found.drives
     ]
+    if task.function is not None:
+        found = replace(found, message=found.message + task.function.note)
+    return _synthesis(task, found, _ranked_loops(task, judged), sum(map(len, found.candidates)))
+
+
+def _synthesis(
+    task: Task, found: Found, designs: Sequence[JudgedDesign], linkages: int
+) -> Synthesis:
     return Synthesis(
         task=task,
         complex=found.complex,
         real=found.real,
         proved=found.proved,
         triples=found.triples,
-        linkages=sum(map(len, found.candidates)),
+        linkages=linkages,
         completeness=found.completeness,
-        message=found.message + ("" if task.function is None else task.function.note),
+        message=found.message,
         dyads=() if found.dyads is None else tuple(_dyads(found)),
-        designs=tuple(_ranked(task, judged)),
+        designs=tuple(designs),
         starts=found.starts,
         interrupted=found.interrupted,
     )
@@ -400,43 +408,31 @@ def _improved(task: Task, progress: Callable[[float], None] | None) -> Synthesis
     told = f"a sample: {kind} from {starts} starts with seed {seed}"
     told += _of_motion(task, ranked)
     told += "" if task.curve is None else task.curve.note
-    return Synthesis(
-        task=task,
-        complex=len(designs),
-        real=len(designs),
+    count = len(designs)
+    found = Found(
+        candidates=(),
+        complex=count,
+        real=count,
         proved=sum(design.improved.sound for design in designs),
-        triples=0,
-        linkages=len(designs),
         completeness=Completeness.SAMPLED,
         message=f"interrupted: the best so far of {starts} starts" if interrupted else told,
-        dyads=(),
-        designs=ranked,
         starts=starts,
         interrupted=interrupted,
     )
+    return _synthesis(task, found, ranked, count)
 
 
 def _six_bars(task: Task, progress: Callable[[float], None] | None) -> Synthesis:
     """All Watt-II six-bars of a function, sound ones by falling score."""
-    designs, found, (grade, message) = solve_watt(task, wishes_of(task, Drive.A0), progress)
+    designs, found = solve_watt(task, wishes_of(task, Drive.A0), progress)
     ranked = _ranked_alone(task, designs)
-    return Synthesis(
-        task=task,
-        complex=len(found.roots.x),
-        real=len(found),
-        proved=int(found.proved.sum()),
-        triples=0,
-        linkages=len(designs),
-        completeness=grade,
-        message=message + _of_motion(task, ranked),
-        dyads=(),
-        designs=ranked,
-    )
+    found = replace(found, message=found.message + _of_motion(task, ranked))
+    return _synthesis(task, found, ranked, len(designs))
 
 
 def _of_motion(task: Task, designs: Sequence[SweptDesign]) -> str:
     """Where wishes are proved for the sound ones of designs that are swept."""
-    sound, wishes = [d.moved for d in designs if not d.kinds], " and ".join(wishes_in_motion(task))
+    sound, wishes = [d for d in designs if not d.kinds], " and ".join(wishes_in_motion(task))
     if not wishes or not sound:
         return ""
     if all(design.proved_in_motion for design in sound):
@@ -445,8 +441,8 @@ def _of_motion(task: Task, designs: Sequence[SweptDesign]) -> str:
 
 
 def _ranked_alone(
-    task: Task, designs: Sequence[_Alone], *, in_order: bool = False
-) -> tuple[_Alone, ...]:
+    task: Task, designs: Sequence[_Design], *, in_order: bool = False
+) -> tuple[_Design, ...]:
     """Designs that were judged one by one: sound ones by falling score, then the others.
 
     ``in_order``: sound ones in their own order, all of them delivered.
@@ -464,18 +460,29 @@ def _ranked_alone(
         for d in designs
     ]
     scores = _scores(task, *np.array(measured, dtype=float).reshape(-1, 3).T)
-    entries = sorted(
-        (bool(d.kinds), 0.0 if d.kinds or in_order else -scores[k], k)
-        for k, d in enumerate(designs)
+    refused = [bool(design.kinds) for design in designs]
+    return _ranked(task, designs, refused, scores, in_order=in_order)
+
+
+def _ranked(
+    task: Task,
+    designs: Sequence[_Design],
+    refused: Sequence[bool],
+    scores: Array,
+    *,
+    in_order: bool = False,
+) -> tuple[_Design, ...]:
+    """Sound designs by falling score, then the others in the order found."""
+    order = sorted(
+        (wrong, 0.0 if wrong or in_order else -score, k)
+        for k, (wrong, score) in enumerate(zip(refused, scores.tolist(), strict=True))
     )
-    ranked: list[_Alone] = []
-    sound = sum(not refused for refused, _, _ in entries)
-    for place, (refused, _, k) in enumerate(entries, start=1):
-        number = place - sound if refused else place
-        delivered = not refused and (in_order or number <= task.rank.deliver)
-        ranked.append(
-            replace(designs[k], number=number, delivered=delivered, score=float(scores[k]))
-        )
+    sound, ranked = len(designs) - sum(refused), list[_Design]()
+    for place, (wrong, _, k) in enumerate(order, start=1):
+        number = place - sound if wrong else place
+        delivered = not wrong and (in_order or number <= task.rank.deliver)
+        own = replace(designs[k], number=number, delivered=delivered, score=float(scores[k]))
+        ranked.append(own)
     return tuple(ranked)
 
 
@@ -533,32 +540,19 @@ def _beyond(task: Task) -> float:
     return task.in_radians(float(abs(goal.points()[0][0] - goal.input[0])))
 
 
-def _ranked(task: Task, judged: list[JudgedDesigns]) -> Iterator[SynthesizedDesign]:
-    """Sound designs by falling score, then the others in the order found."""
-    entries = [
-        (not sound, 0.0 if not sound else -float(score), group, k, float(score))
-        for group, part in enumerate(judged)
-        for k, (sound, score) in enumerate(
-            zip(part.verdicts.sound, _scores_of(task, part), strict=True)
-        )
+def _ranked_loops(task: Task, judged: list[JudgedDesigns]) -> tuple[SynthesizedDesign, ...]:
+    """Designs of loops, which were judged together."""
+    designs = [
+        SynthesizedDesign(task=task, group=part, index=k)
+        for part in judged
+        for k in range(len(part.given))
     ]
-    entries.sort()
-    numbers = {False: 0, True: 0}
-    for refused, _, group, k, score in entries:
-        numbers[bool(refused)] += 1
-        number = numbers[bool(refused)]
-        yield SynthesizedDesign(
-            task=task,
-            number=number,
-            group=judged[group],
-            index=k,
-            delivered=not refused and number <= task.rank.deliver,
-            score=score,
-        )
-
-
-def _scores_of(task: Task, part: JudgedDesigns) -> Array:
-    return _scores(task, part.verdicts.transmission, part.verdicts.size, part.given.miss)
+    scores = [
+        _scores(task, part.verdicts.transmission, part.verdicts.size, part.given.miss)
+        for part in judged
+    ]
+    refused = [bool(wrong) for part in judged for wrong in ~part.verdicts.sound]
+    return _ranked(task, designs, refused, np.concatenate([np.zeros(0), *scores]))
 
 
 def _scores(task: Task, transmission: Array, sizes: Array, miss: Array) -> Array:

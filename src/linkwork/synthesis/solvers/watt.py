@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
-from functools import cached_property
+from functools import cache, cached_property
 from itertools import combinations
 from typing import Any
 
@@ -24,7 +24,8 @@ from linkwork.synthesis.improvement.proved_design import proved_design
 from linkwork.synthesis.loops.candidates import Candidates, Drive, LoopKind
 from linkwork.synthesis.loops.driven_loop import NOWHERE, Travel, driven_loops, travel_of
 from linkwork.synthesis.six_bars.watt import PAIRS, WattSixBars, watt_six_bars
-from linkwork.synthesis.solvers.improved_mechanism import ImprovedMechanism, SweptDesign
+from linkwork.synthesis.solvers.result import Found
+from linkwork.synthesis.solvers.swept_design import SweptDesign
 from linkwork.synthesis.tasks.conditions import Wishes
 from linkwork.synthesis.tasks.task import WATT_II, Task
 
@@ -202,8 +203,6 @@ _LINKS = {
 _BARS = tuple(
     pair for name, own in _LINKS.items() if name != GROUND for pair in combinations(own, 2)
 )
-#: The sides of all links, ground included.
-SIDES = (*_BARS, *combinations(_LINKS[GROUND], 2))
 _STEP = math.pi / 180.0  # of the table [rad]
 _WATT_LINKAGE_ROUNDING = 1e-12  # of a few angles [rad]
 #: Of angles of positions [rad].
@@ -263,19 +262,12 @@ def watt_linkage(group: WattGroup, k: int, wishes: Wishes, name: str) -> Linkage
     )
 
 
-def swept_mechanism(group: WattGroup, k: int, wishes: Wishes) -> ImprovedMechanism:
-    """A design moved through its driven range, each row with its proof."""
-    task = group.task
-    design = proved_design(watt_linkage(group, k, wishes, task.name))
-    return ImprovedMechanism(task=task, improved=design, wishes=wishes)
-
-
 # ----------------------------------------------------------------------
 # A Watt-II six-bar of a task, with the verdict on it.
 
 
-@internal("group", "index", "wishes", "changed", "swept", "linkage", "kinds")
-@dataclass(frozen=True, kw_only=True, eq=False)
+@internal("group", "index", "wishes", "changed", "linkage", "kinds")
+@dataclass(frozen=True, kw_only=True, eq=False, repr=False)
 class WattDesign(SweptDesign):
     """One Watt-II six-bar with its verdict.
 
@@ -285,12 +277,9 @@ class WattDesign(SweptDesign):
         All six-bars of the task.
     index : int
         Its place among them.
-    wishes : Wishes
-        Those of the task, in radians.
     changed : Defect, optional
-        The change of circuit or branch of one of its loops, or that this is not decided.
-    swept : ImprovedMechanism, optional
-        Its motion through the driven range, of a design without such a change.
+        The change of circuit or branch of one of its loops, or that this is not decided; its motion
+        is judged of a design without such a change.
 
     Examples
     --------
@@ -302,22 +291,15 @@ class WattDesign(SweptDesign):
 
     group: WattGroup
     index: int
-    wishes: Wishes
     changed: Defect | None
-    swept: ImprovedMechanism | None
 
     @classmethod
     def of(cls, group: WattGroup, k: int, wishes: Wishes) -> WattDesign:
         """The k-th six-bar, judged."""
+        task = group.task
+        swept = cache(lambda: proved_design(watt_linkage(group, k, wishes, task.name)))
         changed = group.defect(k)
-        swept = None if changed else swept_mechanism(group, k, wishes)
-        return cls(
-            task=group.task, group=group, index=k, wishes=wishes, changed=changed, swept=swept
-        )
-
-    def __repr__(self) -> str:
-        found = ", ".join(kind.value for kind in self.kinds) or "sound"
-        return f"<WattDesign {self.number}: {found}>"
+        return cls(task=task, swept=swept, wishes=wishes, group=group, index=k, changed=changed)
 
     @property
     def mechanism(self) -> str:
@@ -346,55 +328,35 @@ class WattDesign(SweptDesign):
         return tuple(map(self.task.angle.from_radians, radians.tolist()))
 
     @property
-    def first_input(self) -> float:
-        """The input at the first position [file units]."""
-        return self.task.angle.from_radians(self._first_angle)
-
-    @property
     def _first_angle(self) -> float:
         return first_angle(self.group, self.index, self.wishes)
 
     @cached_property
-    def linkage(self) -> Linkage:
-        """The mechanism."""
-        return watt_linkage(self.group, self.index, self.wishes, self._name)
+    def description(self) -> Linkage:
+        """The mechanism, with the name of its task."""
+        return watt_linkage(self.group, self.index, self.wishes, self.task.name)
 
-    @cached_property
-    def moved(self) -> ImprovedMechanism:
-        """Its motion through the driven range, also of a design that changes branch or circuit."""
-        return self.swept or swept_mechanism(self.group, self.index, self.wishes)
+    @property
+    def goals(self) -> dict[str, float]:
+        """None: positions are met."""
+        return {}
 
     @property
     def transmission(self) -> float:
         """A lower bound of the least transmission angle of both loops in the driven range, NaN for
         a design that changes branch or circuit [file's angle unit].
         """
-        return float("nan") if self.swept is None else self.swept.transmission
-
-    @cached_property
-    def size(self) -> float:
-        """The longest side of a link, or distance of fixed pivots [length]."""
-        return max(self._sides)
-
-    @property
-    def shortest(self) -> float:
-        """The shortest side of a link, or distance of fixed pivots [length]."""
-        return min(self._sides)
-
-    @property
-    def _sides(self) -> list[float]:
-        return [abs(self.points[q] - self.points[p]) for p, q in SIDES]
+        return float("nan") if self.changed else super().transmission
 
     @cached_property
     def error(self) -> float:
         """The largest structural error in the rows of the function's own range, 0 for pairs, NaN
         for a design that changes branch or circuit [file's angle unit].
         """
-        if self.swept is None:
+        if self.changed:
             return float("nan")
-        motion, described = self.swept.improved.motion, self.swept.improved.description
-        goal = self.task.function
-        if motion is None or ERROR not in described.outputs or goal is None:
+        motion, goal = self.improved.motion, self.task.function
+        if motion is None or ERROR not in self.description.outputs or goal is None:
             return 0.0
         found = motion.found
         wrong = goal.errors(motion["crank"][found], motion["rocker"][found], self.task.angle.turn)
@@ -405,11 +367,6 @@ class WattDesign(SweptDesign):
         """The unit of the error."""
         return self.task.angle.value
 
-    @property
-    def kinds(self) -> tuple[DefectKind, ...]:
-        """The kinds of its defects; none for a sound design."""
-        return tuple(defect.kind for defect in self.defects)
-
     @cached_property
     def defects(self) -> tuple[Defect, ...]:
         """Its defects in words; none for a sound design.
@@ -419,8 +376,7 @@ class WattDesign(SweptDesign):
         """
         if self.changed is not None:
             return (self.changed,)
-        swept = () if self.swept is None else self.swept.defects
-        return (*self._outside(), *swept)
+        return (*self._outside(), *super().defects)
 
     def _outside(self) -> Iterator[Defect]:
         if self.wishes.range is not None and self.wishes.range.turn:
@@ -433,12 +389,9 @@ class WattDesign(SweptDesign):
             yield Defect(kind=DefectKind.RANGE, between=None, message=told)
 
     def _details(self) -> Mapping[str, Any]:
-        swept = self.swept
-        return {
-            "inputs": list(self.inputs),
-            "proved_in_motion": [] if swept is None else list(swept.proved_in_motion),
-            "tested_in_rows": [] if swept is None else list(swept.tested_in_rows),
-        }
+        found = super()._details() if not self.changed else {}
+        names = ("proved_in_motion", "tested_in_rows")
+        return {"inputs": list(self.inputs), **{name: found.get(name, []) for name in names}}
 
 
 # ----------------------------------------------------------------------
@@ -450,8 +403,8 @@ _EQUAL_ANGLES = 1e-9  # rad: angles that differ by whole turns
 
 def solve_watt(
     task: Task, wishes: Wishes, progress: Callable[[float], None] | None
-) -> tuple[tuple[WattDesign, ...], WattSixBars, tuple[Completeness, str]]:
-    """Designs that are not ranked yet, the solutions, and whether they are complete.
+) -> tuple[tuple[WattDesign, ...], Found]:
+    """Designs that are not ranked yet, and the solutions.
 
     Raises
     ------
@@ -467,7 +420,15 @@ def solve_watt(
     zero = np.array([inputs[0], outputs[0]]) if goal.starts_fixed else None
     group = watt_group(task, found, wanted, zero)
     designs = tuple(WattDesign.of(group, k, wishes) for k in range(len(group)))
-    return designs, found, _completeness(found, len(inputs))
+    grade, message = _completeness(found, len(inputs))
+    return designs, Found(
+        candidates=(),
+        complex=len(found.roots.x),
+        real=len(found),
+        proved=int(found.proved.sum()),
+        completeness=grade,
+        message=message,
+    )
 
 
 def _completeness(solved: WattSixBars, given: int) -> tuple[Completeness, str]:

@@ -22,9 +22,9 @@ from linkwork.synthesis.improvement.improving import numbers_to_vary
 from linkwork.synthesis.improvement.proved_design import ImprovedDesign, proved_design
 from linkwork.synthesis.improvement.settings import Improvement
 from linkwork.synthesis.loops.candidates import Drive
-from linkwork.synthesis.solvers.improved_mechanism import ImprovedMechanism
 from linkwork.synthesis.solvers.improvement import improve_description, mechanism_of
 from linkwork.synthesis.solvers.solving import wishes_of
+from linkwork.synthesis.solvers.swept_design import SweptDesign
 from linkwork.synthesis.tasks.conditions import SAME_GIVEN, Point, Wishes, distances_to_segments
 from linkwork.synthesis.tasks.task import Task
 
@@ -59,14 +59,14 @@ class SuggestedDesign:
     point: str
     positions: tuple[Point, ...]
 
-    def judged(self, task: Task, wishes: Wishes) -> ImprovedMechanism:
+    def judged(self, task: Task, wishes: Wishes) -> SweptDesign:
         """The design with its defects. The order of positions is judged only where the inputs at
         them are known.
         """
         own, points = self.improved, tuple(position.point for position in task.positions)
         if points != self.positions:
             own = replace(own, inputs=(), misses=self._misses(points))
-        return ImprovedMechanism(task=task, improved=own, wishes=wishes)
+        return SweptDesign(task=task, swept=lambda: own, wishes=wishes)
 
     def _misses(self, points: tuple[Point, ...]) -> tuple[float, ...]:
         """The distances of points from the path; NaN without a path."""

@@ -1,10 +1,9 @@
-"""An improved mechanism of any kind with the verdict on it."""
+"""A mechanism of any kind with the verdict on its sweep."""
 
 from __future__ import annotations
 
 import math
-from abc import abstractmethod
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, replace
 from functools import cached_property
 from itertools import combinations, islice
@@ -32,34 +31,18 @@ from linkwork.synthesis.tasks.conditions import (
 )
 from linkwork.synthesis.tasks.task import Task
 
-__all__ = ["ImprovedMechanism", "SweptDesign", "wishes_in_motion"]
+__all__ = ["SweptDesign", "wishes_in_motion"]
 
 
-@dataclass(frozen=True, kw_only=True, eq=False)
+@internal("swept", "description", "improved")
+@dataclass(frozen=True, kw_only=True, eq=False, repr=False)
 class SweptDesign(JudgedDesign):
-    """A design that is judged by a sweep of its mechanism.
-
-    Examples
-    --------
-    >>> from linkwork.synthesis.solvers.improved_mechanism import ImprovedMechanism, SweptDesign
-    >>> issubclass(ImprovedMechanism, SweptDesign)
-    True
-    """
-
-    @property
-    @abstractmethod
-    def moved(self) -> ImprovedMechanism:
-        """Its mechanism in the rows of the driven range."""
-
-
-@internal("improved")
-@dataclass(frozen=True, kw_only=True, eq=False)
-class ImprovedMechanism(SweptDesign):
-    """An improved mechanism, and what keeps it from doing its task.
+    """A mechanism of any kind that is judged by a sweep, and what keeps it from doing its task.
 
     Parameters
     ----------
-    improved : ImprovedDesign
+    swept : callable
+        The design with its proof, found when it is first needed.
     wishes : Wishes
         Those of the task, in radians.
 
@@ -72,13 +55,18 @@ class ImprovedMechanism(SweptDesign):
     [{'O2 A': 34.46567317588864}]
     """
 
-    improved: ImprovedDesign
+    swept: Callable[[], ImprovedDesign]
     wishes: Wishes
 
     @property
-    def moved(self) -> ImprovedMechanism:
-        """The design itself."""
-        return self
+    def improved(self) -> ImprovedDesign:
+        """The design with its proof."""
+        return self.swept()
+
+    @property
+    def description(self) -> Description:
+        """The mechanism, with the name of the one that was improved."""
+        return self.improved.description
 
     @property
     def mechanism(self) -> str:
@@ -88,6 +76,10 @@ class ImprovedMechanism(SweptDesign):
     @property
     def driven(self) -> str:
         """The leading input."""
+        return self._lead
+
+    @property
+    def _lead(self) -> str:
         return next(iter(self._motion.inputs)) if self._motion is not None else ""
 
     @property
@@ -130,12 +122,12 @@ class ImprovedMechanism(SweptDesign):
         motion = self._motion
         if motion is None or not motion.found.any():
             return float("nan")
-        return float(motion.inputs[self.driven][motion.found][0])
+        return float(motion.inputs[self._lead][motion.found][0])
 
     @cached_property
     def linkage(self) -> Description:
         """The mechanism, with the name of its design."""
-        return replace(self.improved.description, name=self._name)
+        return replace(self.description, name=self._name)
 
     # Measures
 
@@ -153,7 +145,7 @@ class ImprovedMechanism(SweptDesign):
     @cached_property
     def _lengths(self) -> Array:
         """The lengths of links, and the distances of fixed pivots [length]."""
-        description, points = self.improved.description, self.points
+        description, points = self.description, self.points
         if not isinstance(description, Draft) or not points:
             return np.zeros(0)
         moving = {p for name, own in description.links.items() if name != GROUND for p in own}
@@ -186,11 +178,6 @@ class ImprovedMechanism(SweptDesign):
         return self.task.length if self.improved.misses else ""
 
     # Verdict
-
-    @property
-    def kinds(self) -> tuple[DefectKind, ...]:
-        """The kinds of its defects; none for a sound design."""
-        return tuple(defect.kind for defect in self.defects)
 
     @cached_property
     def defects(self) -> tuple[Defect, ...]:
@@ -263,7 +250,7 @@ class ImprovedMechanism(SweptDesign):
 
     def _out_of_range(self, motion: Motion) -> Iterator[tuple[DefectKind, str]]:
         """The first position outside the driven range."""
-        table = np.asarray(motion.inputs[self.driven])[motion.asked]
+        table = np.asarray(motion.inputs[self._lead])[motion.asked]
         turn = self.task.angle.turn if motion.derivative_unit == "rad" else math.inf
         for k, at, told in islice(outside_range(self.improved.inputs, table, turn), 1):
             yield DefectKind.RANGE, f"position {k + 1} is passed at {at:.6g}, {told}"
@@ -308,7 +295,7 @@ class ImprovedMechanism(SweptDesign):
     @cached_property
     def _sides(self) -> list[tuple[str, tuple[str, str]]]:
         """The lines between two points of every moving link."""
-        description = self.improved.description
+        description = self.description
         if not isinstance(description, Draft):
             return []
         links = {name: own for name, own in description.links.items() if name != GROUND}
@@ -333,7 +320,7 @@ class ImprovedMechanism(SweptDesign):
                 yield DefectKind.LENGTHS, told
 
     def _pivots(self) -> dict[str, complex]:
-        description = self.improved.description
+        description = self.description
         if not isinstance(description, Draft):
             return {}
         moving = {p for name, own in description.links.items() if name != GROUND for p in own}
