@@ -13,7 +13,7 @@ import numpy as np
 from linkwork.core.foundation.arrays import AnyArray, Array
 from linkwork.core.foundation.files import as_path
 from linkwork.families.study.packages import check_packages
-from linkwork.families.study.store import Entry, attributes_of, open_arrays, read_entries
+from linkwork.families.study.store import StoredChunk, attributes_of, open_arrays, read_chunks
 from linkwork.families.study.study import passes_name
 
 __all__ = ["OutputSummary", "Summary", "summary_of"]
@@ -107,7 +107,7 @@ def summary_of(store: Path | str) -> Summary:
     known = attributes_of(path)
     check_packages()
     identity = known["linkwork_identity"]
-    sound, damaged = read_entries(path)
+    sound, damaged = read_chunks(path)
     entries = [entry for _, entry in sorted(sound.items())]
     arrays = open_arrays(path)
     rows: Counter[str] = Counter()
@@ -141,13 +141,13 @@ def summary_of(store: Path | str) -> Summary:
     )
 
 
-def _pieces(array: Any, entries: list[Entry]) -> Iterator[AnyArray]:
+def _pieces(array: Any, entries: list[StoredChunk]) -> Iterator[AnyArray]:
     """The values of finished chunks, one at a time."""
     for entry in entries:
         yield array[entry.start : entry.stop]
 
 
-def _values(name: str, arrays: Any, entries: list[Entry]) -> Iterator[Array]:
+def _values(name: str, arrays: Any, entries: list[StoredChunk]) -> Iterator[Array]:
     """The available values of an output in each chunk, of designs that passed."""
     for values, passed in zip(
         _pieces(arrays[name], entries), _pieces(arrays["passed"], entries), strict=True
@@ -156,7 +156,7 @@ def _values(name: str, arrays: Any, entries: list[Entry]) -> Iterator[Array]:
         yield there[np.isfinite(there)]
 
 
-def _output(name: str, arrays: Any, entries: list[Entry]) -> OutputSummary:
+def _output(name: str, arrays: Any, entries: list[StoredChunk]) -> OutputSummary:
     count, total, least, most = 0, 0.0, np.inf, -np.inf
     # two passes, since the ends of the bins are known only after the first
     for values in _values(name, arrays, entries):

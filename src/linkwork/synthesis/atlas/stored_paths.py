@@ -10,7 +10,7 @@ import numpy as np
 
 from linkwork.core.foundation.arrays import BoolArray, ComplexArray
 from linkwork.core.foundation.errors import InputError
-from linkwork.families.study.store import Entry, attributes_of, open_arrays, read_entries
+from linkwork.families.study.store import StoredChunk, attributes_of, open_arrays, read_chunks
 from linkwork.synthesis.atlas.path_atlas import AtlasFamily, PathAtlas, coefficients
 
 _CLOSED = 1e-6  # of the path's size: the first and last row are one position
@@ -69,9 +69,9 @@ def _points(kept: Sequence[str]) -> list[str]:
     return [name[:-2] for name in kept if name.endswith(".x") and f"{name[:-2]}.y" in kept]
 
 
-def _entries(path: Path) -> list[Entry]:
+def _entries(path: Path) -> list[StoredChunk]:
     """The finished chunks of a store, in order."""
-    sound, damaged = read_entries(path)
+    sound, damaged = read_chunks(path)
     if damaged:
         raise InputError(
             f'damaged chunks of "{path}": {len(damaged)}; repeat the command of its study, '
@@ -81,12 +81,15 @@ def _entries(path: Path) -> list[Entry]:
 
 
 def _family_of_store(
-    path: Path, attributes: Mapping[str, Any], entries: Sequence[Entry], tell: Callable[[], None]
+    path: Path,
+    attributes: Mapping[str, Any],
+    entries: Sequence[StoredChunk],
+    tell: Callable[[], None],
 ) -> AtlasFamily:
     known = attributes["linkwork_identity"]
     arrays = open_arrays(path)
     (point,) = _points(known["keep"])
-    names = tuple(name for name, _ in known["dimensions"] if arrays[name].ndim == 1)
+    names = tuple(known["varied"])
     numbers = [np.zeros((0, len(names)), dtype=np.float32)]
     shapes = [np.zeros((0, 32), dtype=np.float16)]
     for entry in entries:
