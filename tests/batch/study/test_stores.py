@@ -167,8 +167,9 @@ def test_a_run_killed_at_any_write_goes_on_to_the_same_store(
             break
         except Killed:
             deaths += 1
-            done = summary_of(store).computed  # can be read at any moment
-            assert done in (0, 50)
+            found = summary_of(store)  # can be read at any moment
+            assert found.computed in (0, 50)
+            assert found.damaged == ()
     files = [path for path in wanted if path.endswith("/c/0")]
     files.remove("crank/c/0")
     assert deaths == 2 * len(files) + 1  # both ways in the first chunk, once in the second one
@@ -374,6 +375,22 @@ def test_comments_and_names_of_a_plan_may_change(whole: Path) -> None:
     before = contents(whole)
     run_study(study(("seed = 1", "seed = 1  # of the first day"), ("A small", "The small")), whole)
     assert contents(whole) == before
+
+
+def test_blank_lines_at_the_end_of_a_mechanism_may_change(tmp_path: Path) -> None:
+    text = lw.example_text("four-bar")
+    edits = (*FEW, ('"four-bar"', '"mine.toml"'))
+    for end in ("", "\n\n"):
+        (tmp_path / "mine.toml").write_text(text + end, encoding="utf-8")
+        run_study(study(*edits, folder=tmp_path), tmp_path / "out.zarr", workers=1)
+
+
+def test_every_reader_refuses_damaged_numbers(whole: Path, tmp_path: Path) -> None:
+    shutil.copytree(whole, tmp_path / "out.zarr")
+    for name in ("rocker/c/2/0", "swing/c/1", "O2 A/c/4"):
+        _flipped(tmp_path / "out.zarr" / name, -1)  # in the checksum, or what it covers
+        with pytest.raises(ValueError, match="checksum"):
+            xarray.open_zarr(tmp_path / "out.zarr")[name.split("/")[0]].load()
 
 
 def test_fresh_begins_again_and_takes_nothing_else_away(whole: Path, tmp_path: Path) -> None:

@@ -67,11 +67,11 @@ class Store:
         import zarr
 
         self.path, self.study, self.repaired = path, study, repaired
-        sound, damaged = read_chunks(path)
+        changed = {chunk.number: bool(chunk.changed) for chunk in read_chunks(path)}
         #: Finished chunks as they were written.
-        self.done = set(sound)
+        self.done = {k for k in changed if not changed[k]}
         #: Chunks that were finished, and have changed since.
-        self.damaged = tuple(sorted(damaged))
+        self.damaged = tuple(k for k in changed if changed[k])
         group = zarr.open_group(str(path), mode="r+")
         # otherwise a chunk of fill values would have no file, like one that was lost
         with zarr.config.set({"array.write_empty_chunks": True}):
@@ -280,20 +280,26 @@ def _lock_store(path: Path) -> Iterator[None]:
 
 @dataclass(frozen=True, kw_only=True)
 class StoredChunk:
-    """A finished chunk.
+    """A finished chunk of D designs.
 
     Parameters
     ----------
-    start, stop : int
-        Its designs from ``start`` to ``stop`` (excluded).
+    number : int
+    designs : range
+    changed : tuple of str
+        The files that are missing or do not match their checksums; such a chunk has no rows and no
+        problems.
+    arrays : Mapping[str, (D,) or (D, R)]
     rows : Mapping[str, int]
         Number of rows by status.
     problems : Mapping[str, int]
         Number of designs that could not be built, by reason.
     """
 
-    start: int
-    stop: int
+    number: int
+    designs: range
+    changed: tuple[str, ...]
+    arrays: Mapping[str, AnyArray]
     rows: Mapping[str, int]
     problems: Mapping[str, int]
 
@@ -307,19 +313,34 @@ def open_arrays(path: Path) -> Any:
     return zarr.Group(zarr.AsyncGroup.from_dict(StorePath(store), _description(path)))
 
 
-def read_chunks(path: Path) -> tuple[dict[int, StoredChunk], dict[int, tuple[str, ...]]]:
-    """The chunks that are as they were written; the changed files of the others."""
-    sound: dict[int, StoredChunk] = {}
-    damaged: dict[int, tuple[str, ...]] = {}
+def read_chunks(path: Path) -> Iterator[StoredChunk]:
+    """The finished chunks, in order."""
     arrays = _arrays_of_chunks(open_arrays(path))
-    (size,), (count,) = arrays["built"].chunks, arrays["built"].shape
-    for k in sorted(chunks_with_record(path)):
-        if changed := tuple(_changed_files(path, arrays, k)):
-            damaged[k] = changed
+    return (_read_chunk(path, arrays, k) for k in sorted(chunks_with_record(path)))
+
+
+def _read_chunk(path: Path, arrays: Mapping[str, Any], k: int) -> StoredChunk:
+    values: dict[str, AnyArray] = {}
+    changed: list[str] = []
+    for name, array in arrays.items():
+        place = (k, *[0] * (array.ndim - 1))
+        file = f"{name}/{array.metadata.encode_chunk_key(place)}"
+        try:
+            values[name] = array.get_block_selection(place)
+        except (OSError, ValueError):
+            changed.append(file)
         else:
-            record = json.loads(arrays[_RECORDS][k : k + 1][0])
-            sound[k] = StoredChunk(start=k * size, stop=min((k + 1) * size, count), **record)
-    return sound, damaged
+            if not (path / file).exists():  # zarr has read fill values instead
+                changed.append(file)
+    (size,), (count,) = arrays["built"].chunks, arrays["built"].shape
+    record = {"rows": {}, "problems": {}} if changed else json.loads(values.pop(_RECORDS)[0])
+    return StoredChunk(
+        number=k,
+        designs=range(k * size, min((k + 1) * size, count)),
+        changed=tuple(changed),
+        arrays=values,
+        **record,
+    )
 
 
 def chunks_with_record(path: Path) -> set[int]:
@@ -333,20 +354,6 @@ def _arrays_of_chunks(group: Any) -> dict[str, Any]:
     found = dict(group.arrays())
     stored = {name: a for name, a in found.items() if a.metadata.dimension_names[0] == DESIGN}
     return {**stored, _RECORDS: group[_RECORDS]}
-
-
-def _changed_files(path: Path, arrays: Mapping[str, Any], k: int) -> Iterator[str]:
-    """The files of a chunk that are missing or do not match their checksums."""
-    for name, array in arrays.items():
-        place = (k, *[0] * (array.ndim - 1))
-        file = f"{name}/{array.metadata.encode_chunk_key(place)}"
-        try:
-            array.get_block_selection(place)
-        except (OSError, ValueError):
-            yield file
-        else:
-            if not (path / file).exists():  # zarr reads fill values instead
-                yield file
 
 
 def attributes_of(path: Path) -> Mapping[str, Any]:
@@ -532,5 +539,8 @@ def verify_store(store: Path | str) -> Verification:
     """
     path = as_path(store)
     check_is_store(path)
-    sound, damaged = read_chunks(path)
-    return Verification(sound=len(sound), metadata=damaged_metadata(path), chunks=damaged)
+    files = {chunk.number: chunk.changed for chunk in read_chunks(path)}
+    changed = {number: names for number, names in files.items() if names}
+    return Verification(
+        sound=len(files) - len(changed), metadata=damaged_metadata(path), chunks=changed
+    )
