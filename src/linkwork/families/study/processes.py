@@ -26,8 +26,6 @@ from typing import Any, TypeVar
 
 from linkwork.core.foundation.errors import InputError, LinkworkError
 
-__all__ = ["ProcessExecutor"]
-
 _MOST_DEATHS = 3  # deaths of processes on the same call
 
 Result = TypeVar("Result")

@@ -13,7 +13,6 @@ from dataclasses import dataclass, replace
 from itertools import islice
 from pathlib import Path
 from time import monotonic
-from typing import Any
 
 from linkwork.core.foundation.errors import InputError
 from linkwork.core.foundation.files import as_path
@@ -89,7 +88,13 @@ def cluster_executor(scheduler: str, version: str) -> Iterator[tuple[Executor, i
             "    dask scheduler"
         ) from None
     with client:
-        _wait_for_workers(client, scheduler)
+        try:
+            client.wait_for_workers(1, timeout=_CLUSTER_PATIENCE)
+        except TimeoutError:
+            raise InputError(
+                f"the scheduler at {scheduler} has no workers: start some with\n"
+                f"    dask worker {scheduler} --nthreads 1"
+            ) from None
         try:
             # pure: Dask would return a stored result for equal values
             yield client.get_executor(pure=False), sum(client.nthreads().values())
@@ -103,16 +108,6 @@ def cluster_executor(scheduler: str, version: str) -> Iterator[tuple[Executor, i
                 "workers ended repeatedly on the same designs, perhaps for lack of "
                 f"memory: reduce chunk ({error})"
             ) from None
-
-
-def _wait_for_workers(client: Any, scheduler: str) -> None:
-    try:
-        client.wait_for_workers(1, timeout=_CLUSTER_PATIENCE)
-    except TimeoutError:
-        raise InputError(
-            f"the scheduler at {scheduler} has no workers: start some with\n"
-            f"    dask worker {scheduler} --nthreads 1"
-        ) from None
 
 
 @dataclass(frozen=True, kw_only=True)

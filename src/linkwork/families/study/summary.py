@@ -16,8 +16,6 @@ from linkwork.families.study.packages import check_packages
 from linkwork.families.study.store import attributes_of, open_arrays, read_chunks
 from linkwork.families.study.study import passes_name
 
-__all__ = ["OutputSummary", "Summary", "summary_of"]
-
 _BINS = 12
 _SAME_VALUE = 1e-12  # relative: values that differ by less are equal
 
