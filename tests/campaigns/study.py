@@ -8,12 +8,11 @@ import sys
 import tempfile
 import time
 from collections import Counter
-from collections.abc import Mapping
 from pathlib import Path
 
 import numpy as np
 
-from linkwork.families.study import verify_store
+from linkwork.families.study import chunks_with_record, verify_store
 from tests.batch.study.plans import contents
 
 __all__ = ["study_campaign"]
@@ -119,7 +118,7 @@ def _killed(
             counts["killed"] += 1
         process.kill()
         process.wait()
-        counts["killed in the middle of chunks"] += any(store.rglob("*.part"))
+        counts["killed in the middle of chunks"] += any(store.rglob("*.partial"))
         counts["killed after further chunks"] += _chunks(store) > before
     counts["chunks before the last run"] = _chunks(store)
     if _started(folder, store.name).wait():
@@ -140,8 +139,9 @@ def _flipped(folder: Path, counts: Counter[str], false: list[str]) -> None:
         changed.add(path)
     found = verify_store(store)
     named = {*found.metadata, *(name for names in found.chunks.values() for name in names)}
-    # the files of a chunk are not looked at where its entry is damaged itself
-    silent = {path for path in changed - named if not _is_hidden(path, found.chunks)}
+    silent = changed - named
+    if "ledger/store" in named:  # the checksums of metadata
+        silent = {path for path in silent if "/c/" in path}
     counts["files with flipped bytes"] = len(changed)
     counts["damaged chunks"] = len(found.chunks)
     if silent or not named <= changed:
@@ -150,14 +150,8 @@ def _flipped(folder: Path, counts: Counter[str], false: list[str]) -> None:
         false.append("the study with flipped bytes was not repaired")
 
 
-def _is_hidden(path: str, chunks: Mapping[int, tuple[str, ...]]) -> bool:
-    parts = path.split("/")
-    chunk = int(parts[2]) if len(parts) > 2 and parts[1] == "c" else -1
-    return any(name.startswith("ledger/") for name in chunks.get(chunk, ()))
-
-
 def _chunks(store: Path) -> int:
-    return len(list((store / "ledger").glob("[0-9]*.json")))
+    return len(chunks_with_record(store))
 
 
 def _memory(pid: int) -> int:

@@ -31,7 +31,6 @@ from linkwork.core.commands.terminal import (
 from linkwork.core.foundation.errors import InputError
 from linkwork.core.results.listing.motion_listing import Column, lengths, significant
 from linkwork.families import study as studies
-from linkwork.families.family import compile_kernels
 from linkwork.families.study.packages import check_packages
 
 # ----------------------------------------------------------------------
@@ -280,7 +279,7 @@ def _how_to_go_on(asked: studies.Study, store: str) -> list[str]:
     """How many designs of an interrupted study are stored, and how to resume it."""
     if not Path(store).exists():
         return []
-    stored = asked.count_in(studies.chunks_with_entry(Path(store)))
+    stored = asked.count_in(studies.chunks_with_record(Path(store)))
     return wrapped(
         f"{stored} of {asked.plan.count} designs are stored in {store}. "
         "To resume, repeat the same command."
@@ -326,6 +325,9 @@ def compile_command(as_json: bool) -> None:
     \b
       linkwork compile
     """
+    # the other command says that packages are missing before it loads Numba, which takes long
+    from linkwork.families.family import compile_kernels
+
     begin = time.perf_counter()
     with progress("compiling") as tell:
         compile_kernels(tell)

@@ -14,8 +14,7 @@ from pathlib import Path
 import pytest
 
 from linkwork.core.foundation.errors import InputError, MissingPackageError
-from linkwork.families.study import run_study
-from linkwork.families.study.running import cluster_crew
+from linkwork.families.study import chunks_with_record, run_study
 from tests.batch.study.plans import contents, edited, study
 
 pytestmark = pytest.mark.extended
@@ -72,9 +71,9 @@ def test_a_worker_that_is_killed_changes_nothing(
     words = ["-m", "linkwork", "study", "plan.toml", "-o", "out.zarr", "--scheduler", address]
     run = _start(tmp_path, *words)
     try:
-        _until(lambda: len(list((store / "ledger").glob("[0-9]*.json"))) >= 4)
+        _until(lambda: len(chunks_with_record(store)) >= 4)
         workers[0].send_signal(signal.SIGKILL)
-        stored = len(list((store / "ledger").glob("[0-9]*.json")))
+        stored = len(chunks_with_record(store))
         assert stored < 20
         assert run.wait(60) == 0
     finally:
@@ -84,10 +83,12 @@ def test_a_worker_that_is_killed_changes_nothing(
     assert contents(store) == contents(tmp_path / "whole.zarr")
 
 
-def test_without_dask_the_command_is_said_that_installs_it(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_without_dask_the_command_is_said_that_installs_it(
+    monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
     monkeypatch.setitem(sys.modules, "distributed", None)
     with pytest.raises(MissingPackageError) as caught:
-        next(cluster_crew(study().job, iter(()), "tcp://nowhere:1"))
+        run_study(study(), tmp_path / "out.zarr", scheduler="tcp://nowhere:1")
     assert str(caught.value) == (
         'studies on a cluster need dask.distributed: pip install "linkwork[cluster]"'
     )
@@ -105,10 +106,12 @@ def test_without_zarr_the_command_is_said_that_installs_it(
 
 
 @pytest.mark.filterwarnings("ignore")  # whatever Dask leaves behind when nobody answers
-def test_a_scheduler_that_does_not_answer_is_told(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_scheduler_that_does_not_answer_is_told(
+    monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
     monkeypatch.setattr("linkwork.families.study.running._CLUSTER_PATIENCE", 0.2)
     with pytest.raises(InputError) as caught:
-        next(cluster_crew(study().job, iter(()), "tcp://127.0.0.1:9"))
+        run_study(study(), tmp_path / "out.zarr", scheduler="tcp://127.0.0.1:9")
     assert str(caught.value).startswith("no Dask scheduler answers at tcp://127.0.0.1:9 (")
     assert str(caught.value).endswith("): start one with\n    dask scheduler")
 

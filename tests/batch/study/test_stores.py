@@ -27,8 +27,16 @@ from linkwork.core.foundation.errors import InputError
 from linkwork.core.foundation.statuses import Status
 from linkwork.families import Family
 from linkwork.families.family_motion import FamilyMotion
-from linkwork.families.study import Summary, run_study, running as workers, summary_of, verify_store
-from linkwork.families.study.study import Job, compute_part
+from linkwork.families.study import (
+    Progress,
+    Study,
+    Summary,
+    chunks_with_record,
+    run_study,
+    summary_of,
+    verify_store,
+)
+from linkwork.families.study.study import Part, compute_part
 from tests.batch.study.plans import PLAN, contents, edited, study
 from tests.interruptible import interruptible
 
@@ -119,11 +127,11 @@ def test_values_do_not_depend_on_the_size_of_chunks(
 def test_chunks_may_come_in_any_order(
     whole: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    def backwards(job: Job, tasks: Iterator[workers.Task]) -> Iterator[object]:
-        for k, values in reversed(list(tasks)):
-            yield k, compute_part(job, values)
+    def backwards(asked: Study, chunks: list[int], *_: object) -> Iterator[tuple[int, Part]]:
+        for k in reversed(chunks):
+            yield k, compute_part(asked.job, asked.values(k))
 
-    monkeypatch.setattr("linkwork.families.study.running.one_after_the_other", backwards)
+    monkeypatch.setattr("linkwork.families.study.running.compute_parts", backwards)
     run_study(study(), tmp_path / "out.zarr", workers=1)
     assert contents(tmp_path / "out.zarr") == contents(whole)
 
@@ -134,28 +142,23 @@ def test_a_run_killed_at_any_write_goes_on_to_the_same_store(
     """Every file is torn once while it is written, and once not renamed when it is whole."""
     run_study(study(*FEW), tmp_path / "whole.zarr", workers=1)
     wanted = contents(tmp_path / "whole.zarr")
-    write, replace = Path.write_bytes, os.replace
-    left = 0
+    store, replace, left = tmp_path / "out.zarr", os.replace, 0
 
     def step() -> bool:
         nonlocal left
         left -= 1
         return left == 0
 
-    def torn(path: Path, data: bytes) -> int:
-        if ".part" in path.name and step():
-            write(path, data[: len(data) // 2])
-            raise Killed
-        return write(path, data)
-
-    def renamed(old: Path, new: Path) -> None:
-        if step():
-            raise Killed
+    def killed(old: Path, new: Path) -> None:
+        if Path(new).is_relative_to(store):
+            if step():
+                os.truncate(old, Path(old).stat().st_size // 2)
+                raise Killed
+            if step():
+                raise Killed
         replace(old, new)
 
-    monkeypatch.setattr(Path, "write_bytes", torn)
-    monkeypatch.setattr("linkwork.families.study.store.os.replace", renamed)
-    store = tmp_path / "out.zarr"
+    monkeypatch.setattr(os, "replace", killed)
     deaths = 0
     for at in range(1, 10_000):
         left = at
@@ -164,9 +167,10 @@ def test_a_run_killed_at_any_write_goes_on_to_the_same_store(
             break
         except Killed:
             deaths += 1
-            done = summary_of(store).computed  # can be read at any moment
-            assert done in (0, 50)
-    files = [path for path in wanted if path.endswith(("/c/0", "00000000.json"))]
+            found = summary_of(store)  # can be read at any moment
+            assert found.computed in (0, 50)
+            assert found.damaged == ()
+    files = [path for path in wanted if path.endswith("/c/0")]
     files.remove("crank/c/0")
     assert deaths == 2 * len(files) + 1  # both ways in the first chunk, once in the second one
     assert contents(store) == wanted
@@ -178,7 +182,7 @@ def test_a_damaged_chunk_is_computed_again(whole: Path, tmp_path: Path) -> None:
     for path, damage in (
         ("rocker/c/2/0", b"torn"),
         ("swing/c/1", None),
-        ("ledger/00000003.json", b'{"chunk": 3, '),
+        ("ledger/chunks/c/3", b'{"rows": '),
     ):
         (store / path).unlink() if damage is None else (store / path).write_bytes(damage)
     told: list[int] = []
@@ -203,8 +207,7 @@ def _started(folder: Path, *more: str) -> subprocess.Popen[bytes]:
 def _until(store: Path, chunks: int, process: subprocess.Popen[bytes]) -> None:
     """Until so many chunks are stored."""
     for _ in range(6000):
-        stored = len(list((store / "ledger").glob("[0-9]*.json")))
-        if stored >= chunks or process.poll() is not None:
+        if len(chunks_with_record(store)) >= chunks or process.poll() is not None:
             return
         time.sleep(0.01)
 
@@ -272,8 +275,7 @@ def test_an_interrupt_leaves_a_store_to_go_on_with_and_says_so(tmp_path: Path) -
         f"{found.computed} of 800 designs are stored in out.zarr. To resume, repeat the same "
         "command. Interrupted."
     )
-    entries = [json.loads(path.read_text()) for path in (store / "ledger").glob("[0-9]*.json")]
-    assert sum(entry["stop"] - entry["start"] for entry in entries) == found.computed
+    assert len(chunks_with_record(store)) * 40 == found.computed
     told: list[int] = []
     run_study(study(*LONG), store, workers=1, progress=lambda p: told.append(p.done))
     assert told[0] == found.computed
@@ -281,24 +283,20 @@ def test_an_interrupt_leaves_a_store_to_go_on_with_and_says_so(tmp_path: Path) -
 
 
 @pytest.mark.extended
-def test_a_worker_that_dies_is_replaced(
-    whole: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    asked = workers._Processes._asked
-    deaths = 0
+def test_a_worker_that_dies_is_replaced(tmp_path: Path) -> None:
+    run_study(study(*LONG), tmp_path / "whole.zarr", workers=1)
+    before = set(_children(os.getpid()))
+    killed: list[int] = []
 
-    def dying(self: workers._Processes, process: subprocess.Popen[bytes], values: Any) -> Any:
-        nonlocal deaths
-        deaths += 1
-        if deaths in (1, 4):
-            process.kill()
-            process.wait()
-        return asked(self, process, values)
+    def kill(progress: Progress) -> None:
+        if progress.done in (80, 400):
+            killed.append(min(set(_children(os.getpid())) - before))
+            os.kill(killed[-1], signal.SIGKILL)
 
-    monkeypatch.setattr(workers._Processes, "_asked", dying)
-    run_study(study(), tmp_path / "out.zarr", workers=2)
-    assert deaths == 5 + 2
-    assert contents(tmp_path / "out.zarr") == contents(whole)
+    run_study(study(*LONG), tmp_path / "out.zarr", workers=2, progress=kill)
+    assert len(set(killed)) == 2
+    assert contents(tmp_path / "out.zarr") == contents(tmp_path / "whole.zarr")
+    assert set(_children(os.getpid())) <= before
 
 
 def test_workers_that_die_again_and_again_end_the_run(
@@ -317,7 +315,7 @@ def test_workers_that_die_again_and_again_end_the_run(
 def test_a_worker_of_another_version_refuses(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr("linkwork.families.study.study.linkwork_version", lambda: "7.8.9")
+    monkeypatch.setattr("linkwork.families.study.plan.linkwork_version", lambda: "7.8.9")
     with pytest.raises(InputError, match=r"^the study was started with Linkwork 7\.8\.9, a worker"):
         run_study(study(*FEW), tmp_path / "out.zarr", workers=2)
 
@@ -337,7 +335,7 @@ def test_the_device_of_a_plan_computes_its_designs(
         return sweep(self, **options)
 
     monkeypatch.setattr(Family, "sweep", noted)
-    monkeypatch.setattr("linkwork.families.gpu.kernel.graphics_card", lambda: None)
+    monkeypatch.setattr("linkwork.families.study.running.graphics_card", lambda: None)
     run_study(plan, tmp_path / "out.zarr")  # in this process: a card serves one
     assert asked == ["gpu"] * plan.chunks
     with pytest.raises(InputError, match="device"):
@@ -377,6 +375,22 @@ def test_comments_and_names_of_a_plan_may_change(whole: Path) -> None:
     before = contents(whole)
     run_study(study(("seed = 1", "seed = 1  # of the first day"), ("A small", "The small")), whole)
     assert contents(whole) == before
+
+
+def test_blank_lines_at_the_end_of_a_mechanism_may_change(tmp_path: Path) -> None:
+    text = lw.example_text("four-bar")
+    edits = (*FEW, ('"four-bar"', '"mine.toml"'))
+    for end in ("", "\n\n"):
+        (tmp_path / "mine.toml").write_text(text + end, encoding="utf-8")
+        run_study(study(*edits, folder=tmp_path), tmp_path / "out.zarr", workers=1)
+
+
+def test_every_reader_refuses_damaged_numbers(whole: Path, tmp_path: Path) -> None:
+    shutil.copytree(whole, tmp_path / "out.zarr")
+    for name in ("rocker/c/2/0", "swing/c/1", "O2 A/c/4"):
+        _flipped(tmp_path / "out.zarr" / name, -1)  # in the checksum, or what it covers
+        with pytest.raises(ValueError, match="checksum"):
+            xarray.open_zarr(tmp_path / "out.zarr")[name.split("/")[0]].load()
 
 
 def test_fresh_begins_again_and_takes_nothing_else_away(whole: Path, tmp_path: Path) -> None:
@@ -547,7 +561,7 @@ def test_a_store_damaged_beyond_knowing_its_study_can_be_started_over(
 ) -> None:
     store = tmp_path / "out.zarr"
     shutil.copytree(whole, store)
-    for path in ("zarr.json", "ledger/store.json"):
+    for path in ("zarr.json", "ledger/store"):
         (store / path).write_bytes(b"{}")
     with pytest.raises(InputError) as caught:
         run_study(study(), store, workers=1)
@@ -579,7 +593,7 @@ def test_fresh_refuses_to_delete_what_no_study_wrote(whole: Path, tmp_path: Path
             "move them elsewhere, or choose another store"
         )
         mine.unlink()
-    (store / "rocker/c/3/0.part").write_bytes(b"incomplete")
+    (store / f"rocker/c/3/0.{32 * 'a'}.partial").write_bytes(b"incomplete")
     run_study(study(), store, workers=1, force=True)
     assert contents(store) == contents(whole)
 
@@ -588,17 +602,16 @@ def test_a_full_disk_names_the_file_and_leaves_a_store_to_go_on_with(
     whole: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     store = tmp_path / "out.zarr"
-    write, left = Path.write_bytes, [60]
+    replace, left = os.replace, [60]
 
-    def full(path: Path, data: bytes) -> int:
+    def full(old: Path, new: Path) -> None:
         left[0] -= 1
         if left[0] < 0:
-            write(path, data[: len(data) // 2])
             raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
-        return write(path, data)
+        replace(old, new)
 
     with monkeypatch.context() as patch:
-        patch.setattr(Path, "write_bytes", full)
+        patch.setattr(os, "replace", full)
         with pytest.raises(InputError) as caught:
             run_study(study(), store, workers=1)
     assert str(caught.value).startswith(f'cannot write "{store}{os.sep}')
@@ -606,7 +619,7 @@ def test_a_full_disk_names_the_file_and_leaves_a_store_to_go_on_with(
         ": No space left on device. The chunks that are stored are complete: make room and repeat "
         "the command"
     )
-    assert not list(store.rglob("*.part"))
+    assert not list(store.rglob("*.partial"))
     assert 0 < summary_of(store).computed < 300
     run_study(study(), store, workers=1)
     assert contents(store) == contents(whole)

@@ -153,13 +153,24 @@ def test_an_atlas_is_made_of_the_stores_of_studies(tmp_path: Path) -> None:
         atlas_of_stores([half])
 
 
+def test_a_constant_of_a_plan_is_a_number_of_its_mechanisms(tmp_path: Path) -> None:
+    plan = (_PLANS / "slider-crank.toml").read_text().replace("1_000_000", "60")
+    plan = plan.replace('"A B"   = { from = 110, to = 400 }', '"A B" = 150')
+    run_study(read_plan_text(plan, folder=_PLANS), tmp_path / "few.zarr", workers=1)
+    (family,) = atlas_of_stores([tmp_path / "few.zarr"]).families
+    numbers = dict(zip(family.names, family.numbers.T, strict=True))
+    assert set(numbers) == {"A B", "A0.y", "A P", "B A P"}
+    assert len(family) > 20
+    assert set(numbers["A B"]) == {150}
+
+
 def test_stores_that_are_unfinished_damaged_or_gone_are_named(tmp_path: Path) -> None:
     plan = (_PLANS / "slider-crank.toml").read_text()
     few = plan.replace("1_000_000", "60").replace("seed      = 1", "seed = 1\nchunk = 20")
     store, file = tmp_path / "few.zarr", tmp_path / "few.npz"
     run_study(read_plan_text(few, folder=_PLANS), store, workers=1)
     whole = len(atlas_of_stores([store]).families[0])
-    (store / "ledger" / "00000001.json").unlink()
+    (store / "ledger/chunks/c/1").unlink()
     told: list[float] = []
     made = atlas_of_stores([store], told.append)
     assert told == [0.5, 1.0]

@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     from linkwork.families.study.running import Progress as Progress, run_study as run_study
     from linkwork.families.study.store import (
         Verification as Verification,
-        chunks_with_entry as chunks_with_entry,
+        chunks_with_record as chunks_with_record,
         verify_store as verify_store,
     )
     from linkwork.families.study.study import Study as Study

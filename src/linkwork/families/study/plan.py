@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import hashlib
+import json
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import partial
@@ -328,15 +329,15 @@ class _Reader:
         """All data on which results depend, in JSON types."""
         content = self.content
         first, last = model.rows_in_file_units[[0, -1]].tolist()
-        return {
+        identity = {
             "linkwork": job.version,
             # files with other line ends describe the same mechanism
             "mechanism": mechanism.replace("\r\n", "\n"),
             "sampling": content["sampling"],
             "count": plan.count,
             "seed": content.get("seed"),
-            # a list: the random numbers depend on the order of dimensions
-            "dimensions": [[name, entry] for name, entry in content.get("dimensions", {}).items()],
+            "varied": list(plan),  # the random numbers depend on their order
+            "dimensions": dict(content.get("dimensions", {})),
             "table": _digest(plan) if content["sampling"] == "table" else None,
             "input": {"first": first, "last": last, "rows": len(model.rows_in_file_units)},
             "keep": list(job.keep),
@@ -346,6 +347,9 @@ class _Reader:
             "device": job.device,
             "chunk": chunk,
         }
+        # as it is read back: tuples become lists
+        as_stored: dict[str, Any] = json.loads(json.dumps(identity))
+        return as_stored
 
 
 def _digest(plan: Plan) -> str:

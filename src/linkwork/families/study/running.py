@@ -1,35 +1,19 @@
-"""Worker processes on this machine that compute the parts of a study.
+"""Run a study chunk by chunk into its store: in this process, in worker processes, or on a cluster.
 
-``concurrent.futures.ProcessPoolExecutor`` and other pools based on multiprocessing, such as Dask's
-``LocalCluster``, are not suitable:
-
-* Their processes run the caller's main module again, so a study in a script without
-  ``if __name__ == "__main__"`` ends in an error.
-* The death of one process breaks the pool and fails all running parts; the part that caused it is
-  not known, so designs that always kill their worker would be retried forever.
-* Their processes hold both ends of their pipes, so they survive a killed run.
-
-Separate processes, each with its own pipe and thread, avoid these problems.
+Workers are executors of ``concurrent.futures``. They need only Linkwork: they receive their input
+with the call and return the results; only the main process writes to the store.
 """
 
 from __future__ import annotations
 
-import os
-import pickle
-import subprocess
-import sys
-from collections.abc import Callable, Generator, Iterable, Iterator, Mapping
-from concurrent.futures import ThreadPoolExecutor
-from contextlib import closing, suppress
+from collections.abc import Callable, Generator, Iterable, Iterator
+from concurrent.futures import FIRST_COMPLETED, Executor, Future, wait
+from contextlib import closing, contextmanager
 from dataclasses import dataclass, replace
+from itertools import islice
 from pathlib import Path
-from queue import Empty, SimpleQueue
-from threading import Lock
 from time import monotonic
-from typing import Any, Protocol
-from uuid import uuid4
 
-from linkwork.core.foundation.arrays import Array
 from linkwork.core.foundation.errors import InputError
 from linkwork.core.foundation.files import as_path
 from linkwork.core.foundation.loading import cores, installed_with
@@ -37,171 +21,62 @@ from linkwork.core.foundation.values import whole_number
 from linkwork.families.gpu.kernel import graphics_card
 from linkwork.families.study.packages import check_packages
 from linkwork.families.study.plan import read_plan
+from linkwork.families.study.processes import ProcessExecutor
 from linkwork.families.study.store import open_store
-from linkwork.families.study.study import Job, Part, Study, compute_part
+from linkwork.families.study.study import Part, Study, compute_part
 from linkwork.families.study.summary import Summary, summary_of
 
-Values = Mapping[str, "Array | float"]
-#: The number of a chunk, and its varied numbers.
-Task = tuple[int, Values]
-
-_MOST_DEATHS = 3  # deaths of workers on the same part
-_WORKERS_PATIENCE = 1.0  # interval of checks for Ctrl-C [s]
+_INTERRUPT_CHECK = 1.0  # interval of checks for Ctrl-C, which some systems need [s]
+_CLUSTER_PATIENCE = 10  # timeout for the scheduler's answer and its first worker [s]
+_AHEAD = 2  # parts for each thread of the cluster: no worker has to wait
 
 
-class _Future(Protocol):
-    def result(self) -> Any: ...
+def compute_parts(
+    study: Study, chunks: Iterable[int], workers: int, scheduler: str | None
+) -> Generator[tuple[int, Part]]:
+    """The parts of some chunks in order of completion, with the numbers of the chunks.
 
-    def add_done_callback(self, fn: Callable[[Any], object], /) -> object: ...
-
-
-def one_after_the_other(job: Job, tasks: Iterable[Task]) -> Iterator[tuple[int, Part]]:
-    """Compute the parts in this process."""
-    for k, values in tasks:
-        yield k, compute_part(job, values)
-
-
-def local_crew(job: Job, tasks: Iterable[Task], workers: int) -> Iterator[tuple[int, Part]]:
-    """Compute the parts in worker processes, in order of completion."""
-    crew = _Processes(job, workers)
-    pool = ThreadPoolExecutor(workers)
-
-    try:
-        yield from pump_parts(tasks, lambda values: pool.submit(crew.part, values), workers + 1)
-    finally:
-        pool.shutdown(wait=False, cancel_futures=True)
-        crew.end()
-        pool.shutdown()
+    With a scheduler its cluster computes, otherwise worker processes; with one worker, the calling
+    process.
+    """
+    if scheduler is not None:
+        with cluster_executor(scheduler, study.job.version) as (cluster, threads):
+            yield from _completed(study, chunks, cluster, _AHEAD * threads)
+    elif workers > 1:
+        with ProcessExecutor(workers) as processes:
+            yield from _completed(study, chunks, processes, workers + 1)
+    else:
+        for k in chunks:
+            yield k, compute_part(study.job, study.values(k))
 
 
-def pump_parts(
-    tasks: Iterable[Task], submit: Callable[[Values], _Future], most: int
+def _completed(
+    study: Study, chunks: Iterable[int], executor: Executor, most: int
 ) -> Iterator[tuple[int, Part]]:
     """Parts in order of completion; at most ``most`` are running."""
-    ready: SimpleQueue[_Future] = SimpleQueue()
-    pending: dict[_Future, int] = {}
-    waiting = iter(tasks)
+    running: dict[Future[Part], int] = {}
+    waiting = iter(chunks)
     while True:
-        while len(pending) < most and (task := next(waiting, None)) is not None:
-            future = submit(task[1])
-            pending[future] = task[0]
-            future.add_done_callback(ready.put)
-        if not pending:
+        for k in islice(waiting, most - len(running)):
+            running[executor.submit(compute_part, study.job, study.values(k))] = k
+        if not running:
             return
-        future = _next(ready)
-        yield pending.pop(future), future.result()
+        for future in wait(running, _INTERRUPT_CHECK, FIRST_COMPLETED).done:
+            yield running.pop(future), future.result()
 
 
-def _next(ready: SimpleQueue[_Future]) -> _Future:
-    """The next completed future; Ctrl-C works meanwhile on every system."""
-    while True:
-        try:
-            return ready.get(timeout=_WORKERS_PATIENCE)
-        except Empty:
-            continue
+@contextmanager
+def cluster_executor(scheduler: str, version: str) -> Iterator[tuple[Executor, int]]:
+    """The executor of a Dask cluster, and the number of its threads.
 
-
-class _Processes:
-    """Worker processes, each used by one thread at a time."""
-
-    def __init__(self, job: Job, count: int) -> None:
-        self._job = job
-        self._idle: SimpleQueue[subprocess.Popen[bytes]] = SimpleQueue()
-        self._all: set[subprocess.Popen[bytes]] = set()
-        self._ended = False
-        self._changing = Lock()
-        for _ in range(count):
-            self._idle.put(self._started())
-
-    def part(self, values: Values) -> Part:
-        """The part of some designs, computed by an idle process.
-
-        Raises
-        ------
-        InputError
-            If the job is rejected, or processes die on it repeatedly.
-        """
-        for _ in range(_MOST_DEATHS):
-            process = self._idle.get()
-            try:
-                answer = self._asked(process, values)
-            except (EOFError, OSError, pickle.UnpicklingError):
-                # after an incomplete answer the pipe cannot be used: start a new process
-                process.kill()
-                self._idle.put(self._in_place_of(process))
-                continue
-            self._idle.put(process)
-            if isinstance(answer, str):
-                raise InputError(answer)
-            return answer
-        raise InputError(
-            f"worker processes ended {_MOST_DEATHS} times on the same designs, perhaps for lack "
-            "of memory: reduce chunk or --workers"
-        )
-
-    def end(self) -> None:
-        """End all processes."""
-        with self._changing:
-            self._ended = True
-        for process in self._all:
-            process.kill()
-        for process in self._all:
-            process.wait()
-            for stream in (process.stdin, process.stdout):
-                if stream is not None:
-                    with suppress(OSError):  # unread data is discarded
-                        stream.close()
-
-    def _asked(self, process: subprocess.Popen[bytes], values: Values) -> Part | str:
-        assert process.stdin is not None
-        assert process.stdout is not None
-        pickle.dump((self._job, values), process.stdin, pickle.HIGHEST_PROTOCOL)
-        process.stdin.flush()
-        answer: Part | str = pickle.load(process.stdout)
-        return answer
-
-    def _in_place_of(self, dead: subprocess.Popen[bytes]) -> subprocess.Popen[bytes]:
-        with self._changing:
-            return dead if self._ended else self._started()
-
-    def _started(self) -> subprocess.Popen[bytes]:
-        # new session: Ctrl-C reaches only the main process, which ends its workers
-        process = subprocess.Popen(
-            [sys.executable, "-P", "-m", "linkwork.families.study.worker"],
-            stdin=subprocess.PIPE,
-            stdout=subprocess.PIPE,
-            env={**_quiet_threads(), "PYTHONPATH": os.pathsep.join(filter(None, sys.path))},
-            start_new_session=True,
-        )
-        self._all.add(process)
-        return process
-
-
-def _quiet_threads() -> dict[str, str]:
-    """The environment of a process that uses one core."""
-    return {"OMP_NUM_THREADS": "1", "OPENBLAS_NUM_THREADS": "1", **os.environ}
-
-
-# ----------------------------------------------------------------------
-# Compute the parts of a study on a Dask cluster; the only module that uses dask.distributed.
-#
-# Workers need only Linkwork: they receive their input with the task and return the results; only
-# the main process writes to the store.
-
-
-_CLUSTER_PATIENCE = 10  # timeout for the scheduler's answer and its first worker [s]
-_AHEAD = 2  # parts for each thread of the cluster
-
-
-def cluster_crew(job: Job, tasks: Iterable[Task], scheduler: str) -> Iterator[tuple[int, Part]]:
-    """Parts in order of completion; those of workers that die are computed again.
+    Parts of workers that die are computed again.
 
     Raises
     ------
     MissingPackageError
         If dask.distributed is not installed.
     InputError
-        If no scheduler answers, it has no workers, or these reject the job.
+        If no scheduler answers, it has no workers, or these lack Linkwork or end repeatedly.
     """
     with installed_with("cluster", "studies on a cluster need dask.distributed"):
         import distributed
@@ -213,20 +88,19 @@ def cluster_crew(job: Job, tasks: Iterable[Task], scheduler: str) -> Iterator[tu
             "    dask scheduler"
         ) from None
     with client:
-        _wait_for_workers(client, scheduler)
-        # more pending parts than threads, so that no worker has to wait
-        threads = sum(client.nthreads().values())
-        run = uuid4().hex
-
-        def submit(values: Values) -> Any:
-            # a unique key each time: Dask would return a cached result for equal values
-            return client.submit(compute_part, job, values, key=f"linkwork-{run}-{uuid4().hex}")
-
         try:
-            yield from pump_parts(tasks, submit, _AHEAD * threads)
+            client.wait_for_workers(1, timeout=_CLUSTER_PATIENCE)
+        except TimeoutError:
+            raise InputError(
+                f"the scheduler at {scheduler} has no workers: start some with\n"
+                f"    dask worker {scheduler} --nthreads 1"
+            ) from None
+        try:
+            # pure: Dask would return a stored result for equal values
+            yield client.get_executor(pure=False), sum(client.nthreads().values())
         except ModuleNotFoundError as error:
             raise InputError(
-                f"the workers of {scheduler} lack {error.name}: install Linkwork {job.version} "
+                f"the workers of {scheduler} lack {error.name}: install Linkwork {version} "
                 "where they run"
             ) from None
         except distributed.KilledWorker as error:
@@ -234,20 +108,6 @@ def cluster_crew(job: Job, tasks: Iterable[Task], scheduler: str) -> Iterator[tu
                 "workers ended repeatedly on the same designs, perhaps for lack of "
                 f"memory: reduce chunk ({error})"
             ) from None
-
-
-def _wait_for_workers(client: Any, scheduler: str) -> None:
-    try:
-        client.wait_for_workers(1, timeout=_CLUSTER_PATIENCE)
-    except TimeoutError:
-        raise InputError(
-            f"the scheduler at {scheduler} has no workers: start some with\n"
-            f"    dask worker {scheduler} --nthreads 1"
-        ) from None
-
-
-# ----------------------------------------------------------------------
-# Run a study chunk by chunk into its store, with any number of workers.
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -320,7 +180,7 @@ def run_study(
     -----
     The stored data depend on the plan only, not on the workers or their order. The store can be
     read at any moment; missing chunks read as missing values. Only this process writes to it: a
-    chunk's files, each renamed when it is complete, then the ledger entry with their checksums.
+    chunk's files, each with its checksum and renamed when it is complete, then the chunk's record.
     After a killed run, unfinished chunks are computed again, and so are damaged ones.
     """
     check_packages()
@@ -329,39 +189,21 @@ def run_study(
     study = plan if isinstance(plan, Study) else read_plan(plan)
     if study.job.device == "gpu" and scheduler is None:
         graphics_card()  # raises an error before a store is created
+    if workers is None:
+        workers = 1 if study.job.device == "gpu" else cores()
     with open_store(study, as_path(store), force=force) as target:
         tell = _teller(study, target.done, progress)
         tell()
         left = [k for k in range(study.chunks) if k not in target.done]
-        tasks = ((k, study.values(k)) for k in left)
         if left:
-            # closing ends the workers also when the store fails
-            with closing(_crew(study, tasks, len(left), workers, scheduler)) as parts:
+            # more processes than chunks would only load Linkwork
+            parts = compute_parts(study, left, min(workers, len(left)), scheduler)
+            with closing(parts):  # ends the workers also when the store fails
                 for k, part in parts:
                     target.write(k, part)
                     tell()
         repaired: tuple[int | str, ...] = (*target.repaired, *target.damaged)
     return replace(summary_of(store), repaired=repaired)
-
-
-def _crew(
-    study: Study,
-    tasks: Iterable[Task],
-    chunks: int,
-    workers: int | None,
-    scheduler: str | None,
-) -> Generator[tuple[int, Part]]:
-    """The parts of all tasks, from the selected kind of workers."""
-    if workers is None:
-        workers = 1 if study.job.device == "gpu" else cores()
-    # more processes than chunks would only load Linkwork
-    count = min(workers, chunks)
-    if scheduler is not None:
-        yield from cluster_crew(study.job, tasks, scheduler)
-    elif count == 1:
-        yield from one_after_the_other(study.job, tasks)
-    else:
-        yield from local_crew(study.job, tasks, count)
 
 
 def _teller(

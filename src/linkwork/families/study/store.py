@@ -1,17 +1,25 @@
-"""Whether the packages of stores are installed; asked before anything that loads Numba."""
+"""The store of a study: a Zarr group that is written chunk by chunk and can be resumed.
+
+A chunk is finished when the array ``ledger/chunks`` has its record, which is written last. zarr
+writes every file completely or not at all, and ends it with a checksum (codec ``crc32c``).
+
+Zarr has no checksums of the files that describe arrays. ``ledger/store`` has them, and its content
+describes the store while such a file is damaged.
+"""
 
 from __future__ import annotations
 
 import json
 import os
+import re
 import shutil
 import sys
 import warnings
 import zlib
-from collections.abc import Container, Iterable, Iterator, Mapping, Sequence
-from contextlib import contextmanager, suppress
+from collections.abc import Iterator, Mapping
+from contextlib import contextmanager
 from dataclasses import asdict, dataclass
-from itertools import zip_longest
+from itertools import islice, zip_longest
 from pathlib import Path
 from typing import Any
 
@@ -19,282 +27,29 @@ from linkwork.core.foundation.arrays import AnyArray
 from linkwork.core.foundation.errors import InputError, key_text
 from linkwork.core.foundation.files import as_path, unwritten
 from linkwork.core.foundation.values import as_told
-from linkwork.families.study.study import DESIGN, Part, Study, Variable
-
-# ----------------------------------------------------------------------
-# Arrays as files of a Zarr store; the only module that uses zarr.
-#
-# Files are created in memory and written by :mod:`~linkwork.batch.study.store`, each completely or
-# not at all.
-
-
-#: The group that lists finished chunks.
-LEDGER = "ledger"
-#: The file that describes the whole store, or one array in its folder.
-METADATA = "zarr.json"
-
-
-class ZarrFiles:
-    """The files of a store, created in memory.
-
-    Parameters
-    ----------
-    variables : iterable of Variable
-    sizes : Mapping[str, int]
-        Length of every axis.
-    chunk : int
-        Designs per file.
-    attributes : Mapping
-        Attributes of the store.
-    """
-
-    def __init__(
-        self,
-        variables: Iterable[Variable],
-        sizes: Mapping[str, int],
-        chunk: int,
-        attributes: Mapping[str, Any],
-    ) -> None:
-        import zarr
-        from zarr.codecs import ZstdCodec
-        from zarr.storage import MemoryStore
-
-        self._files: dict[str, Any] = {}
-        store = MemoryStore(self._files)
-        group = zarr.open_group(store, mode="w", zarr_format=3, attributes=dict(attributes))
-        group.create_group(LEDGER)
-        self._arrays: dict[str, Any] = {}
-        for variable in variables:
-            array = group.create_array(
-                variable.name,
-                shape=tuple(sizes[axis] for axis in variable.axes),
-                chunks=tuple(chunk if axis == DESIGN else sizes[axis] for axis in variable.axes),
-                dtype=variable.dtype,
-                fill_value=variable.fill,
-                dimension_names=variable.axes,
-                attributes=dict(variable.attributes),
-                compressors=ZstdCodec(level=3),
-            )
-            if variable.values is not None:
-                array[:] = variable.values
-            self._arrays[variable.name] = array
-        with warnings.catch_warnings():
-            # used by xarray; other readers read the metadata of each array
-            warnings.filterwarnings("ignore", message="Consolidated metadata")
-            zarr.consolidate_metadata(store)
-        #: Path and content of the files that exist before any computation.
-        self.first = {path: buffer.to_bytes() for path, buffer in self._files.items()}
-
-    def encoded(self, designs: range, arrays: Mapping[str, AnyArray]) -> dict[str, bytes]:
-        """Path and content of the files that hold a chunk's arrays."""
-        for name, values in arrays.items():
-            self._arrays[name][designs.start : designs.stop] = values
-        made = [path for path in self._files if path not in self.first]
-        return {path: self._files.pop(path).to_bytes() for path in made}
-
-
-def open_arrays(path: Path) -> Any:
-    """The arrays of a store for reading, as a zarr group."""
-    import zarr
-
-    return zarr.open_group(str(path), mode="r")
-
-
-# ----------------------------------------------------------------------
-# The manifest of a store: finished chunks, with the checksums of their files.
-#
-# A chunk is finished when its entry exists; the entry is written after the files. After a killed
-# run, unfinished chunks are computed again, and so are chunks with files that have changed since.
-# Every file of the manifest has a checksum of its own.
-
-
-#: Suffix of incomplete files.
-PARTIAL = ".part"
-_SUFFIX = ".json"
-_STORE = f"store{_SUFFIX}"
-_SEAL = "checksum"
-
-#: [size, CRC-32] of files, by their path in the store.
-Sums = Mapping[str, list[int]]
-
-
-@dataclass(frozen=True, kw_only=True)
-class Entry:
-    """A finished chunk.
-
-    Parameters
-    ----------
-    chunk, start, stop : int
-        Its number, and its designs from ``start`` to ``stop`` (excluded).
-    files : Mapping[str, [size, CRC-32]]
-        By path in the store.
-    rows : Mapping[str, int]
-        Number of rows by status.
-    problems : Mapping[str, int]
-        Number of designs that could not be built, by reason.
-    """
-
-    chunk: int
-    start: int
-    stop: int
-    files: Sums
-    rows: Mapping[str, int]
-    problems: Mapping[str, int]
-
-    @classmethod
-    def of_files(
-        cls,
-        chunk: int,
-        designs: range,
-        files: Mapping[str, bytes],
-        rows: Mapping[str, int],
-        problems: Mapping[str, int],
-    ) -> Entry:
-        """The entry of a chunk with files of this content."""
-        return cls(
-            chunk=chunk,
-            start=designs.start,
-            stop=designs.stop,
-            files=_sums(files),
-            rows=rows,
-            problems=problems,
-        )
-
-
-@dataclass(frozen=True, kw_only=True)
-class Metadata:
-    """The files that describe a store and its arrays, and the identity of its study."""
-
-    files: Sums
-    identity: Mapping[str, Any]
-
-    @classmethod
-    def of_files(cls, files: Mapping[str, bytes], identity: Mapping[str, Any]) -> Metadata:
-        """Of files with this content."""
-        return cls(files=_sums(files), identity=identity)
-
-    @classmethod
-    def read(cls, store: Path) -> Metadata | None:
-        """From a store; ``None`` if it is missing or damaged."""
-        found = _unsealed(store / LEDGER / _STORE)
-        return None if found is None else cls(**found)
-
-    def sealed(self) -> tuple[str, bytes]:
-        """Path in the store and content of the file that holds this."""
-        return f"{LEDGER}/{_STORE}", _sealed(asdict(self))
-
-
-def changed_files(store: Path, known: Sums) -> tuple[str, ...]:
-    """The files that are missing or do not match their checksums."""
-    return tuple(path for path, sums in known.items() if _sum(store / path) != sums)
-
-
-def write_whole(path: Path, data: bytes) -> None:
-    """Write a file completely or not at all.
-
-    Raises
-    ------
-    InputError
-        If it cannot be written, as on a full disk.
-    """
-    part = path.with_name(path.name + PARTIAL)
-    try:
-        path.parent.mkdir(parents=True, exist_ok=True)
-        part.write_bytes(data)
-        # renaming is atomic: readers never see incomplete files
-        os.replace(part, path)
-    except OSError as error:
-        with suppress(OSError):  # it would take up the last of the disk
-            part.unlink()
-        raise InputError(
-            f'cannot write "{path}": {error.strerror or error}. The chunks that are stored are '
-            "complete: make room and repeat the command"
-        ) from None
-
-
-def write_entry(store: Path, entry: Entry) -> None:
-    """Record that a chunk is finished."""
-    write_whole(store / LEDGER / f"{entry.chunk:08}{_SUFFIX}", _sealed(asdict(entry)))
-
-
-def read_entries(store: Path) -> tuple[dict[int, Entry], dict[int, tuple[str, ...]]]:
-    """The entries of chunks that are as they were written; the changed files of the others."""
-    sound: dict[int, Entry] = {}
-    damaged: dict[int, tuple[str, ...]] = {}
-    for chunk, path in _entry_files(store):
-        found = _unsealed(path)
-        if found is None:
-            damaged[chunk] = (f"{LEDGER}/{path.name}",)
-            continue
-        entry = Entry(**found)
-        if changed := changed_files(store, entry.files):
-            damaged[chunk] = changed
-        else:
-            sound[chunk] = entry
-    return sound, damaged
-
-
-def chunks_with_entry(store: Path) -> set[int]:
-    """The chunks that are recorded as finished; their files are not read."""
-    return {chunk for chunk, _ in _entry_files(store)}
-
-
-def _entry_files(store: Path) -> Iterator[tuple[int, Path]]:
-    for path in sorted((store / LEDGER).glob(f"[0-9]*{_SUFFIX}")):
-        if path.stem.isdecimal():
-            yield int(path.stem), path
-
-
-def _sealed(values: Mapping[str, Any]) -> bytes:
-    """JSON text with its own checksum; sorted, so that two runs write identical stores."""
-    text = json.dumps(values, ensure_ascii=False, sort_keys=True)
-    return json.dumps(
-        {**values, _SEAL: zlib.crc32(text.encode())}, ensure_ascii=False, sort_keys=True
-    ).encode()
-
-
-def _unsealed(path: Path) -> dict[str, Any] | None:
-    """The values of a sealed file; ``None`` if it is missing, truncated or changed."""
-    try:
-        data = path.read_bytes()
-        values = json.loads(data)
-        del values[_SEAL]
-        return values if _sealed(values) == data else None
-    except (OSError, ValueError, KeyError, TypeError, RecursionError):
-        return None
-
-
-def _sums(files: Mapping[str, bytes]) -> dict[str, list[int]]:
-    return {path: [len(data), zlib.crc32(data)] for path, data in sorted(files.items())}
-
-
-def _sum(path: Path) -> list[int] | None:
-    """Size and checksum of a file; ``None`` if it cannot be read."""
-    size = total = 0
-    try:
-        with path.open("rb") as file:
-            # in pieces: a file may be larger than memory
-            while piece := file.read(1 << 20):
-                size += len(piece)
-                total = zlib.crc32(piece, total)
-    except OSError:
-        return None
-    return [size, total]
-
-
-# ----------------------------------------------------------------------
-# The store of a study on disk: create, resume, or reject the store of another study.
-
+from linkwork.families.study.study import DESIGN, Part, Study
 
 if sys.platform == "win32":
     import msvcrt
 else:
     import fcntl
 
+#: The group of what Linkwork notes about the chunks and the store.
+LEDGER = "ledger"
+#: The file that describes the whole store, or one array in its folder.
+METADATA = "zarr.json"
 
+_RECORDS = f"{LEDGER}/chunks"  # an array of texts, one for each chunk
+_STORE = f"{LEDGER}/store"
+_LOCK = f"{LEDGER}/lock"
 _IDENTITY = "linkwork_identity"
-_LOCK = "lock"
+_PARTIAL = ".partial"  # zarr's suffix of incomplete files
 _LONGEST_SHOWN = 60  # maximum length of a value in a message
+_DEEPEST = 2  # keys of a difference between studies, as dimensions."O2 A"
+
+
+# ----------------------------------------------------------------------
+# Create a store, or resume it.
 
 
 class Store:
@@ -304,36 +59,41 @@ class Store:
     ----------
     path : Path
     study : Study
-    files : ZarrFiles
-        Creates the files of the store.
     repaired : tuple of str
         Metadata that was damaged and has been written again.
     """
 
-    def __init__(
-        self, path: Path, study: Study, files: ZarrFiles, repaired: tuple[str, ...]
-    ) -> None:
+    def __init__(self, path: Path, study: Study, repaired: tuple[str, ...]) -> None:
+        import zarr
+
         self.path, self.study, self.repaired = path, study, repaired
-        self._files = files
-        sound, damaged = read_entries(path)
-        #: Finished chunks with files that match their checksums.
-        self.done = set(sound)
+        changed = {chunk.number: bool(chunk.changed) for chunk in read_chunks(path)}
+        #: Finished chunks as they were written.
+        self.done = {k for k in changed if not changed[k]}
         #: Chunks that were finished, and have changed since.
-        self.damaged = tuple(sorted(damaged))
+        self.damaged = tuple(k for k in changed if changed[k])
+        group = zarr.open_group(str(path), mode="r+")
+        # otherwise a chunk of fill values would have no file, like one that was lost
+        with zarr.config.set({"array.write_empty_chunks": True}):
+            self._arrays = _arrays_of_chunks(group)
 
     def write(self, k: int, part: Part) -> None:
-        """Store a chunk: first its files, then its ledger entry."""
+        """Store a chunk: first its arrays, then its record."""
         designs = self.study.designs_of(k)
-        varied = self.study.varied(k)
-        files = self._files.encoded(designs, {**varied, **part.arrays})
-        for path, data in files.items():
-            write_whole(self.path / path, data)
-        write_entry(
-            # after the files: the next run would accept an entry without files
-            self.path,
-            Entry.of_files(k, designs, files, rows=part.rows, problems=part.problems),
-        )
+        for name, values in {**self.study.varied(k), **part.arrays}.items():
+            self._write(name, designs, values)
+        record = json.dumps({"rows": part.rows, "problems": part.problems}, sort_keys=True)
+        self._write(_RECORDS, range(k, k + 1), [record])
         self.done.add(k)
+
+    def _write(self, name: str, where: range, values: AnyArray | list[str]) -> None:
+        try:
+            self._arrays[name][where.start : where.stop] = values
+        except OSError as error:
+            raise InputError(
+                f'cannot write "{self.path / name}": {error.strerror or error}. The chunks that '
+                "are stored are complete: make room and repeat the command"
+            ) from None
 
 
 @contextmanager
@@ -350,91 +110,32 @@ def open_store(study: Study, path: Path, *, force: bool = False) -> Iterator[Sto
     InputError
         If the path contains another study or other files, or another run is writing to it.
     """
-    files = _files_of(study)
+    files = _files_before_chunks(study)
     if force and _exists(path):
         check_is_store(path)  # delete nothing but the store of a study
         _take_away(path)
     if not _exists(path):
-        _make(path, files.first, study)
+        _make(path, files)
     check_is_store(path)  # only stores have a lock
     with _lock_store(path):
         _check_same(study, path)
-        yield Store(path, study, files, _repair(path, files.first, study))
+        of_study = _names_of_files(path)
+        for incomplete in path.rglob(f"*{_PARTIAL}"):
+            if of_study.fullmatch(incomplete.relative_to(path).as_posix()):
+                incomplete.unlink()
+        repaired = damaged_metadata(path)
+        if repaired:
+            # a title or a comment may have changed, so all of it belongs together
+            _write_files(path, files)
+        yield Store(path, study, repaired)
 
 
-def attributes_of(path: Path) -> Mapping[str, Any]:
-    """The attributes of a store that describe its study.
+def _files_before_chunks(study: Study) -> dict[str, bytes]:
+    """Path and content of the files of a store without chunks."""
+    import zarr
+    from zarr.codecs import Crc32cCodec, ZstdCodec
+    from zarr.storage import MemoryStore
 
-    Raises
-    ------
-    InputError
-        If it is not the store of a study, or its metadata is damaged.
-    """
-    check_is_store(path)
-    if (attributes := _read_attributes(path)) is None or damaged_metadata(path):
-        raise InputError(
-            f'the metadata of "{path}" is damaged, or of an earlier version: repeat the command '
-            "of its study, which repairs the store"
-        )
-    return attributes
-
-
-def damaged_metadata(path: Path) -> tuple[str, ...]:
-    """The files that describe a store and have changed since they were written."""
-    known = Metadata.read(path)
-    if known is None:
-        return (Metadata(files={}, identity={}).sealed()[0],)
-    return changed_files(path, known.files)
-
-
-def _read_attributes(path: Path) -> dict[str, Any] | None:
-    try:
-        found = json.loads((path / METADATA).read_text(encoding="utf-8"))["attributes"]
-        return {**found, _IDENTITY: json.loads(found[_IDENTITY])}
-    except (OSError, ValueError, KeyError, TypeError, RecursionError):
-        return None
-
-
-def check_is_store(path: Path) -> None:
-    """Check that a folder is the store of a study, damaged or not.
-
-    Raises
-    ------
-    InputError
-        If it is not there, or something else.
-    """
-    if not _exists(path):
-        raise InputError(f'there is no "{path}"')
-    known = (path / LEDGER / _LOCK).exists() or _read_attributes(path) is not None
-    if not known and Metadata.read(path) is None:
-        raise InputError(f'"{path}" exists and is not the store of a study: choose another name')
-
-
-def _exists(path: Path) -> bool:
-    try:
-        return path.exists()
-    except OSError as error:  # such as a name that is too long
-        raise InputError(f"{as_told(str(path))} cannot be read: {error.strerror}") from None
-
-
-def _repair(path: Path, files: Mapping[str, bytes], study: Study) -> tuple[str, ...]:
-    """Write damaged metadata again; its names."""
-    damaged = damaged_metadata(path)
-    if damaged:
-        # a title or a comment may have changed, so all of it belongs together
-        name, record = Metadata.of_files(files, _as_stored(study.identity)).sealed()
-        for each, data in {**files, name: record}.items():
-            write_whole(path / each, data)
-    return damaged
-
-
-def _as_stored(identity: Mapping[str, Any]) -> Mapping[str, Any]:
-    """As read back from JSON: tuples become lists."""
-    found: Mapping[str, Any] = json.loads(json.dumps(identity))
-    return found
-
-
-def _files_of(study: Study) -> ZarrFiles:
     lead = study.inputs[0]
     others = [name for name in study.inputs[1:] if " " not in name]
     attributes = {
@@ -448,26 +149,71 @@ def _files_of(study: Study) -> ZarrFiles:
         **({"coordinates": " ".join(others)} if others else {}),
     }
     sizes = {DESIGN: study.plan.count, lead: len(study.model.rows_in_file_units)}
-    return ZarrFiles(study.variables, sizes, study.chunk_size, attributes)
+    chunks = {**sizes, DESIGN: study.chunk_size}
+    buffers: dict[str, Any] = {}
+    store = MemoryStore(buffers)
+    group = zarr.open_group(store, mode="w", zarr_format=3, attributes=attributes)
+    for variable in study.variables:
+        array = group.create_array(
+            variable.name,
+            shape=tuple(sizes[axis] for axis in variable.axes),
+            chunks=tuple(chunks[axis] for axis in variable.axes),
+            dtype=variable.dtype,
+            fill_value=variable.fill,
+            dimension_names=variable.axes,
+            attributes=dict(variable.attributes),
+            compressors=[ZstdCodec(level=3), Crc32cCodec()],
+        )
+        if variable.values is not None:
+            array[:] = variable.values
+    group.create_array(
+        _RECORDS,
+        shape=(study.chunks,),
+        chunks=(1,),
+        dtype="string",
+        fill_value="",
+        compressors=[Crc32cCodec()],
+    )
+    with warnings.catch_warnings():
+        # used by xarray; other readers read the metadata of each array
+        warnings.filterwarnings("ignore", message="Consolidated metadata")
+        zarr.consolidate_metadata(store)
+    files = {path: buffer.to_bytes() for path, buffer in buffers.items()}
+    content = {
+        "group": json.loads(files[METADATA]),
+        "checksums": {path: zlib.crc32(data) for path, data in files.items()},
+    }
+    text = json.dumps(content, ensure_ascii=False).encode()
+    return {**files, _STORE: _checksum(text) + b"\n" + text}
 
 
-def _make(path: Path, files: Mapping[str, bytes], study: Study) -> None:
+def _make(path: Path, files: Mapping[str, bytes]) -> None:
     """Create a store without chunks, in one step."""
     if not path.parent.is_dir():
         raise InputError(f'cannot write "{path}": there is no folder "{path.parent}"')
     # on the same file system, so that renaming is atomic
-    part = path.with_name(f".{path.name}.{os.getpid()}{PARTIAL}")
+    part = path.with_name(f".{path.name}.{os.getpid()}{_PARTIAL}")
     shutil.rmtree(part, ignore_errors=True)
-    record, content = Metadata.of_files(files, _as_stored(study.identity)).sealed()
     try:
-        for name, data in {**files, record: content, f"{LEDGER}/{_LOCK}": b""}.items():
-            (part / name).parent.mkdir(parents=True, exist_ok=True)
-            (part / name).write_bytes(data)
+        _write_files(part, {**files, _LOCK: b""})
         os.rename(part, path)
     except OSError as error:
         raise unwritten(path, error) from None
     finally:
         shutil.rmtree(part, ignore_errors=True)
+
+
+def _write_files(folder: Path, files: Mapping[str, bytes]) -> None:
+    """Write files, each completely or not at all."""
+    for name, data in files.items():
+        path = folder / name
+        part = path.with_name(path.name + _PARTIAL)
+        try:
+            path.parent.mkdir(parents=True, exist_ok=True)
+            part.write_bytes(data)
+            os.replace(part, path)
+        except OSError as error:
+            raise unwritten(path, error) from None
 
 
 def _take_away(path: Path) -> None:
@@ -483,7 +229,7 @@ def _take_away(path: Path) -> None:
             f'"{path}" also contains files that are no part of a study, as "{foreign[0]}": '
             "move them elsewhere, or choose another store"
         )
-    aside = path.with_name(f".{path.name}.{os.getpid()}.old{PARTIAL}")
+    aside = path.with_name(f".{path.name}.{os.getpid()}.old{_PARTIAL}")
     with _lock_store(path):
         # renamed before deletion: an interruption leaves no incomplete store of this name
         os.rename(path, aside)
@@ -491,94 +237,26 @@ def _take_away(path: Path) -> None:
 
 
 def _foreign_files(path: Path) -> list[str]:
-    """Files in a store that are neither metadata, nor parts of arrays, nor of the ledger."""
-    arrays = {found.parent.name for found in path.glob(f"*/{METADATA}")}
-    return [
-        str(Path(*parts))
-        for parts in (file.relative_to(path).parts for file in sorted(path.rglob("*")))
-        if (path / Path(*parts)).is_file() and not _is_own(parts, arrays)
-    ]
+    """Files in a store that are neither metadata, nor chunks of arrays, nor of the ledger."""
+    of_study = _names_of_files(path)
+    files = (each.relative_to(path) for each in sorted(path.rglob("*")) if each.is_file())
+    return [str(file) for file in files if not of_study.fullmatch(file.as_posix())]
 
 
-def _is_own(parts: Sequence[str], arrays: Container[str]) -> bool:
-    folder, *rest = parts
-    name = parts[-1].removesuffix(PARTIAL)
-    if not rest:
-        return name == METADATA
-    if folder == LEDGER:
-        return len(rest) == 1 and (name in (METADATA, _LOCK) or name.endswith(".json"))
-    if len(rest) == 1:
-        return name == METADATA
-    numbers = (*rest[1:-1], name)
-    return folder in arrays and rest[0] == "c" and all(part.isdecimal() for part in numbers)
-
-
-def _check_same(study: Study, path: Path) -> None:
-    """Reject the store of another study."""
-    here = _as_stored(study.identity)
-    known, attributes = Metadata.read(path), _read_attributes(path)
-    if known is not None:
-        there = known.identity
-    elif attributes is not None:
-        there = attributes[_IDENTITY]
-    else:
-        raise InputError(
-            f'"{path}" is damaged beyond knowing its study: start over with --force, '
-            "which deletes it, or choose another store"
-        )
-    if told := "\n".join(_differences(there, here)):
-        raise InputError(
-            f'"{path}" holds another study:\n{told}\n'
-            "Choose another store, or start over with --force, "
-            "which deletes the old study."
-        )
-
-
-def _differences(there: Mapping[str, Any], here: Mapping[str, Any]) -> Iterator[str]:
-    """The differences between two studies, one line each."""
-    for key in {**here, **there}:
-        old: Any = there.get(key)
-        new: Any = here.get(key)
-        if old == new:
-            continue
-        if key == "mechanism":
-            old, new = _first_change(old, new)
-        # different names: values need not be compared
-        elif key == "dimensions" and [n for n, _ in old] != [n for n, _ in new]:
-            old, new = ([name for name, _ in each] for each in (old, new))
-        elif key in ("dimensions", "input", "reductions", "filters"):
-            for name, was, now in _changed_entries(dict(old), dict(new)):
-                yield f"  {key_text((key, name))}: {_shown(was)} there, {_shown(now)} here"
-            continue
-        yield f"  {key}: {_shown(old)} there, {_shown(new)} here"
-
-
-def _changed_entries(
-    old: Mapping[str, Any], new: Mapping[str, Any]
-) -> Iterator[tuple[str, Any, Any]]:
-    for name in {**new, **old}:
-        if old.get(name) != new.get(name):
-            yield name, old.get(name), new.get(name)
-
-
-def _first_change(old: str, new: str) -> tuple[str, str]:
-    """The first differing lines of two texts."""
-    pairs = zip_longest(old.split("\n"), new.split("\n"), fillvalue="")
-    was, now = next(pair for pair in pairs if pair[0] != pair[1])
-    return was.strip(), now.strip()
-
-
-def _shown(value: Any) -> str:
-    if value is None or value == "":
-        return "nothing"
-    text = value if isinstance(value, str) else json.dumps(value, ensure_ascii=False)
-    return text if len(text) <= _LONGEST_SHOWN else text[:_LONGEST_SHOWN] + "…"
+def _names_of_files(path: Path) -> re.Pattern[str]:
+    """The names of all files that a study may have written, incomplete ones too."""
+    arrays = [re.escape(found.parent.name) for found in path.glob(f"*/{METADATA}")]
+    folder = f"({'|'.join([*arrays, _RECORDS])})/"
+    chunk = r"c(/\d+)+(\.[0-9a-f]{32})?"
+    return re.compile(
+        f"(({folder})?{METADATA}|{folder}{chunk}|{_STORE})({_PARTIAL})?|{_LOCK}", re.DOTALL
+    )
 
 
 @contextmanager
 def _lock_store(path: Path) -> Iterator[None]:
     """Lock the store against other writers; the lock of a killed process disappears."""
-    lock = path / LEDGER / _LOCK
+    lock = path / _LOCK
     lock.parent.mkdir(exist_ok=True)
     with lock.open("ab") as file:
         try:
@@ -594,6 +272,229 @@ def _lock_store(path: Path) -> Iterator[None]:
                 f'another run is writing to "{path}": wait for it or stop it'
             ) from None
         yield
+
+
+# ----------------------------------------------------------------------
+# Read a store.
+
+
+@dataclass(frozen=True, kw_only=True)
+class StoredChunk:
+    """A finished chunk of D designs.
+
+    Parameters
+    ----------
+    number : int
+    designs : range
+    changed : tuple of str
+        The files that are missing or do not match their checksums; such a chunk has no rows and no
+        problems.
+    arrays : Mapping[str, (D,) or (D, R)]
+    rows : Mapping[str, int]
+        Number of rows by status.
+    problems : Mapping[str, int]
+        Number of designs that could not be built, by reason.
+    """
+
+    number: int
+    designs: range
+    changed: tuple[str, ...]
+    arrays: Mapping[str, AnyArray]
+    rows: Mapping[str, int]
+    problems: Mapping[str, int]
+
+
+def open_arrays(path: Path) -> Any:
+    """The arrays of a store for reading, as a zarr group; damaged metadata is not read."""
+    import zarr
+    from zarr.storage import LocalStore, StorePath
+
+    store = LocalStore(path, read_only=True)
+    return zarr.Group(zarr.AsyncGroup.from_dict(StorePath(store), _description(path)))
+
+
+def read_chunks(path: Path) -> Iterator[StoredChunk]:
+    """The finished chunks, in order."""
+    arrays = _arrays_of_chunks(open_arrays(path))
+    return (_read_chunk(path, arrays, k) for k in sorted(chunks_with_record(path)))
+
+
+def _read_chunk(path: Path, arrays: Mapping[str, Any], k: int) -> StoredChunk:
+    values: dict[str, AnyArray] = {}
+    changed: list[str] = []
+    for name, array in arrays.items():
+        place = (k, *[0] * (array.ndim - 1))
+        file = f"{name}/{array.metadata.encode_chunk_key(place)}"
+        try:
+            values[name] = array.get_block_selection(place)
+        except (OSError, ValueError):
+            changed.append(file)
+        else:
+            if not (path / file).exists():  # zarr has read fill values instead
+                changed.append(file)
+    (size,), (count,) = arrays["built"].chunks, arrays["built"].shape
+    record = {"rows": {}, "problems": {}} if changed else json.loads(values.pop(_RECORDS)[0])
+    return StoredChunk(
+        number=k,
+        designs=range(k * size, min((k + 1) * size, count)),
+        changed=tuple(changed),
+        arrays=values,
+        **record,
+    )
+
+
+def chunks_with_record(path: Path) -> set[int]:
+    """The chunks that are recorded as finished; their files are not read."""
+    names = (file.name for file in (path / _RECORDS / "c").glob("*"))
+    return {int(name) for name in names if name.isdecimal()}
+
+
+def _arrays_of_chunks(group: Any) -> dict[str, Any]:
+    """The arrays that are written chunk by chunk, the records last."""
+    found = dict(group.arrays())
+    stored = {name: a for name, a in found.items() if a.metadata.dimension_names[0] == DESIGN}
+    return {**stored, _RECORDS: group[_RECORDS]}
+
+
+def attributes_of(path: Path) -> Mapping[str, Any]:
+    """The attributes of a store that describe its study.
+
+    Raises
+    ------
+    InputError
+        If it is not the store of a study, or its metadata is damaged.
+    """
+    check_is_store(path)
+    if damaged_metadata(path):
+        raise InputError(
+            f'the metadata of "{path}" is damaged, or of an earlier version: repeat the command '
+            "of its study, which repairs the store"
+        )
+    return _attributes(_description(path))
+
+
+def damaged_metadata(path: Path) -> tuple[str, ...]:
+    """The files that describe a store and have changed since they were written."""
+    known = _read_store_file(path)
+    if known is None:
+        return (_STORE,)
+    return tuple(file for file, sum_ in known["checksums"].items() if _sum(path / file) != sum_)
+
+
+def _description(path: Path) -> dict[str, Any]:
+    """The content of the file that describes the whole store, also while it is damaged.
+
+    Raises
+    ------
+    InputError
+        If its copy is damaged too.
+    """
+    known = _read_store_file(path)
+    found = _read_group(path) if known is None else known["group"]
+    if found is None:
+        raise InputError(
+            f'"{path}" is damaged beyond knowing its study: start over with --force, '
+            "which deletes it, or choose another store"
+        )
+    return found
+
+
+def _attributes(description: Mapping[str, Any]) -> dict[str, Any]:
+    found = description["attributes"]
+    return {**found, _IDENTITY: json.loads(found[_IDENTITY])}
+
+
+def _read_store_file(path: Path) -> dict[str, Any] | None:
+    """The copy of the description, and checksums; ``None`` if the file is missing or damaged."""
+    try:
+        checksum, text = (path / _STORE).read_bytes().split(b"\n", 1)
+        known: dict[str, Any] | None = json.loads(text) if checksum == _checksum(text) else None
+    except (OSError, ValueError):
+        return None
+    return known
+
+
+def _read_group(path: Path) -> dict[str, Any] | None:
+    """The description of a study's store; ``None`` if it is missing or damaged."""
+    try:
+        found: dict[str, Any] = json.loads((path / METADATA).read_text(encoding="utf-8"))
+        _attributes(found)
+    except (OSError, ValueError, KeyError, TypeError, RecursionError):
+        return None
+    return found
+
+
+def _checksum(text: bytes) -> bytes:
+    return b"%08x" % zlib.crc32(text)
+
+
+def _sum(file: Path) -> int | None:
+    try:
+        return zlib.crc32(file.read_bytes())
+    except OSError:
+        return None
+
+
+def check_is_store(path: Path) -> None:
+    """Check that a folder is the store of a study, damaged or not.
+
+    Raises
+    ------
+    InputError
+        If it is not there, or something else.
+    """
+    if not _exists(path):
+        raise InputError(f'there is no "{path}"')
+    known = (path / _LOCK).exists() or _read_store_file(path) is not None
+    if not known and _read_group(path) is None:
+        raise InputError(f'"{path}" exists and is not the store of a study: choose another name')
+
+
+def _exists(path: Path) -> bool:
+    try:
+        return path.exists()
+    except OSError as error:  # such as a name that is too long
+        raise InputError(f"{as_told(str(path))} cannot be read: {error.strerror}") from None
+
+
+# ----------------------------------------------------------------------
+# Whether a store holds the same study.
+
+
+def _check_same(study: Study, path: Path) -> None:
+    """Reject the store of another study."""
+    there = _attributes(_description(path))[_IDENTITY]
+    if lines := "\n".join(_differences(there, study.identity)):
+        raise InputError(
+            f'"{path}" holds another study:\n{lines}\n'
+            "Choose another store, or start over with --force, "
+            "which deletes the old study."
+        )
+
+
+def _differences(there: Any, here: Any, *key: str) -> Iterator[str]:
+    """The differences between two studies, one line each."""
+    if isinstance(there, dict) and isinstance(here, dict) and len(key) < _DEEPEST:
+        for name in {**here, **there}:
+            yield from _differences(there.get(name), here.get(name), *key, name)
+    elif isinstance(there, str) and isinstance(here, str):
+        # the first lines that differ
+        lines = zip_longest(there.split("\n"), here.split("\n"), fillvalue="")
+        for old, new in islice((pair for pair in lines if pair[0] != pair[1]), 1):
+            yield _difference(old.strip(), new.strip(), key)
+    elif there != here:
+        yield _difference(there, here, key)
+
+
+def _difference(there: Any, here: Any, key: tuple[str, ...]) -> str:
+    return f"  {key_text(key)}: {_shown(there)} there, {_shown(here)} here"
+
+
+def _shown(value: Any) -> str:
+    if value is None or value == "":
+        return "nothing"
+    text = value if isinstance(value, str) else json.dumps(value, ensure_ascii=False)
+    return text if len(text) <= _LONGEST_SHOWN else text[:_LONGEST_SHOWN] + "…"
 
 
 # ----------------------------------------------------------------------
@@ -638,5 +539,8 @@ def verify_store(store: Path | str) -> Verification:
     """
     path = as_path(store)
     check_is_store(path)
-    sound, damaged = read_entries(path)
-    return Verification(sound=len(sound), metadata=damaged_metadata(path), chunks=damaged)
+    files = {chunk.number: chunk.changed for chunk in read_chunks(path)}
+    changed = {number: names for number, names in files.items() if names}
+    return Verification(
+        sound=len(files) - len(changed), metadata=damaged_metadata(path), chunks=changed
+    )

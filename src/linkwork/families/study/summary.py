@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Iterator, Mapping
+from collections.abc import Mapping
 from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import Any
@@ -13,10 +13,8 @@ import numpy as np
 from linkwork.core.foundation.arrays import AnyArray, Array
 from linkwork.core.foundation.files import as_path
 from linkwork.families.study.packages import check_packages
-from linkwork.families.study.store import Entry, attributes_of, open_arrays, read_entries
+from linkwork.families.study.store import attributes_of, open_arrays, read_chunks
 from linkwork.families.study.study import passes_name
-
-__all__ = ["OutputSummary", "Summary", "summary_of"]
 
 _BINS = 12
 _SAME_VALUE = 1e-12  # relative: values that differ by less are equal
@@ -107,75 +105,77 @@ def summary_of(store: Path | str) -> Summary:
     known = attributes_of(path)
     check_packages()
     identity = known["linkwork_identity"]
-    sound, damaged = read_entries(path)
-    entries = [entry for _, entry in sorted(sound.items())]
+    filters = identity["filters"]
+    counted = ("built", "passed", "certified", *map(passes_name, filters))
+    outputs = {name: _Output() for name in (*identity["reductions"], *identity["keep"])}
+    counts, rows, problems = Counter[str](), Counter[str](), Counter[str]()
+    sound: list[range] = []
+    damaged: list[int] = []
+    for chunk in read_chunks(path):
+        if chunk.changed:
+            damaged.append(chunk.number)
+            continue
+        sound.append(chunk.designs)
+        rows.update(chunk.rows)
+        problems.update(chunk.problems)
+        counts.update({name: int(chunk.arrays[name].sum()) for name in counted})
+        for name, output in outputs.items():
+            output.measure(_values(chunk.arrays[name], chunk.arrays["passed"]))
     arrays = open_arrays(path)
-    rows: Counter[str] = Counter()
-    problems: Counter[str] = Counter()
-    for entry in entries:
-        rows.update(entry.rows)
-        problems.update(entry.problems)
-
-    def total(name: str) -> int:
-        return sum(int(values.sum()) for values in _pieces(arrays[name], entries))
-
     return Summary(
         name=known["title"],
         mechanism=known["mechanism_name"],
         designs=identity["count"],
-        computed=sum(entry.stop - entry.start for entry in entries),
+        computed=sum(map(len, sound)),
         inputs=identity["input"]["rows"],
-        built=total("built"),
-        passed=total("passed"),
-        filters={
-            name: (condition, total(passes_name(name)))
-            for name, condition in identity["filters"].items()
-        },
+        built=counts["built"],
+        passed=counts["passed"],
+        filters={name: (filters[name], counts[passes_name(name)]) for name in filters},
         rows=dict(rows.most_common()),
-        certified=total("certified"),
+        certified=counts["certified"],
         problems=dict(problems.most_common()),
         outputs=tuple(
-            _output(name, arrays, entries) for name in (*identity["reductions"], *identity["keep"])
+            output.summary(name, arrays[name], arrays["passed"], sound)
+            for name, output in outputs.items()
         ),
-        damaged=tuple(sorted(damaged)),
+        damaged=tuple(damaged),
     )
 
 
-def _pieces(array: Any, entries: list[Entry]) -> Iterator[AnyArray]:
-    """The values of finished chunks, one at a time."""
-    for entry in entries:
-        yield array[entry.start : entry.stop]
+def _values(values: AnyArray, passed: AnyArray) -> Array:
+    """The available values of designs that passed."""
+    there = values[passed]
+    return np.asarray(there[np.isfinite(there)])
 
 
-def _values(name: str, arrays: Any, entries: list[Entry]) -> Iterator[Array]:
-    """The available values of an output in each chunk, of designs that passed."""
-    for values, passed in zip(
-        _pieces(arrays[name], entries), _pieces(arrays["passed"], entries), strict=True
-    ):
-        there = values[passed]
-        yield there[np.isfinite(there)]
+class _Output:
+    """The values of an output, chunk by chunk: the store may be larger than memory."""
 
-
-def _output(name: str, arrays: Any, entries: list[Entry]) -> OutputSummary:
     count, total, least, most = 0, 0.0, np.inf, -np.inf
-    # two passes, since the ends of the bins are known only after the first
-    for values in _values(name, arrays, entries):
-        count += values.size
-        # chunk by chunk: the store may be larger than memory
-        total += float(values.sum())
-        least = min(least, float(values.min(initial=np.inf)))
-        most = max(most, float(values.max(initial=-np.inf)))
-    bins = np.zeros(_BINS, dtype=int)
-    spread = count > 0 and most - least > _SAME_VALUE * max(abs(least), abs(most))
-    if spread:
-        for values in _values(name, arrays, entries):
-            bins += np.histogram(values, _BINS, (least, most))[0]
-    return OutputSummary(
-        name=name,
-        unit=arrays[name].attrs.get("units", ""),
-        count=count,
-        least=least if count else np.nan,
-        mean=total / count if count else np.nan,
-        most=most if count else np.nan,
-        histogram=tuple(bins.tolist()) if spread else ((count,) if count else ()),
-    )
+
+    def measure(self, values: Array) -> None:
+        """Count the values of a chunk."""
+        self.count += values.size
+        self.total += float(values.sum())
+        self.least = min(self.least, float(values.min(initial=np.inf)))
+        self.most = max(self.most, float(values.max(initial=-np.inf)))
+
+    def summary(self, name: str, array: Any, passed: Any, sound: list[range]) -> OutputSummary:
+        """Of all values; the chunks are read again, since the ends of the bins are known now."""
+        found = self.count > 0
+        bins = np.array([self.count] if found else [], dtype=int)
+        if found and self.most - self.least > _SAME_VALUE * max(abs(self.least), abs(self.most)):
+            bins = np.zeros(_BINS, dtype=int)
+            for designs in sound:
+                part = slice(designs.start, designs.stop)
+                values = _values(array[part], passed[part])
+                bins += np.histogram(values, _BINS, (self.least, self.most))[0]
+        return OutputSummary(
+            name=name,
+            unit=array.attrs.get("units", ""),
+            count=self.count,
+            least=self.least if found else np.nan,
+            mean=self.total / self.count if found else np.nan,
+            most=self.most if found else np.nan,
+            histogram=tuple(bins.tolist()),
+        )

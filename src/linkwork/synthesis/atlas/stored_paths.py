@@ -10,7 +10,7 @@ import numpy as np
 
 from linkwork.core.foundation.arrays import BoolArray, ComplexArray
 from linkwork.core.foundation.errors import InputError
-from linkwork.families.study.store import Entry, attributes_of, open_arrays, read_entries
+from linkwork.families.study.store import attributes_of, chunks_with_record, read_chunks
 from linkwork.synthesis.atlas.path_atlas import AtlasFamily, PathAtlas, coefficients
 
 _CLOSED = 1e-6  # of the path's size: the first and last row are one position
@@ -32,8 +32,7 @@ def atlas_of_stores(
     stores = [*{path.resolve(): path for path in stores}.values()]  # each of them once
     # wrong stores are refused before the first one is read
     known = [_checked(path) for path in stores]
-    entries = [_entries(path) for path in stores]
-    whole, done = sum(map(len, entries)), 0
+    whole, done = sum(len(chunks_with_record(path)) for path in stores), 0
 
     def tell() -> None:
         nonlocal done
@@ -43,10 +42,10 @@ def atlas_of_stores(
 
     unfinished = []
     families = []
-    for path, attributes, own in zip(stores, known, entries, strict=True):
-        families.append(_family_of_store(path, attributes, own, tell))
-        stored = sum(entry.stop - entry.start for entry in own)
-        count = open_arrays(path)["passed"].shape[0]
+    for path, attributes in zip(stores, known, strict=True):
+        family, stored = _family_of_store(path, attributes, tell)
+        families.append(family)
+        count = attributes["linkwork_identity"]["count"]
         if stored < count:
             unfinished.append(f'"{path}" has {stored} of {count} designs: its study is unfinished')
     return PathAtlas(families=tuple(families), unfinished=tuple(unfinished))
@@ -69,41 +68,43 @@ def _points(kept: Sequence[str]) -> list[str]:
     return [name[:-2] for name in kept if name.endswith(".x") and f"{name[:-2]}.y" in kept]
 
 
-def _entries(path: Path) -> list[Entry]:
-    """The finished chunks of a store, in order."""
-    sound, damaged = read_entries(path)
-    if damaged:
-        raise InputError(
-            f'damaged chunks of "{path}": {len(damaged)}; repeat the command of its study, '
-            "which computes them again"
-        )
-    return [entry for _, entry in sorted(sound.items())]
-
-
 def _family_of_store(
-    path: Path, attributes: Mapping[str, Any], entries: Sequence[Entry], tell: Callable[[], None]
-) -> AtlasFamily:
+    path: Path, attributes: Mapping[str, Any], tell: Callable[[], None]
+) -> tuple[AtlasFamily, int]:
+    """The paths of a store, and the number of its designs."""
     known = attributes["linkwork_identity"]
-    arrays = open_arrays(path)
     (point,) = _points(known["keep"])
-    names = tuple(name for name, _ in known["dimensions"] if arrays[name].ndim == 1)
+    varied = known["varied"]
+    constants = {name: x for name, x in known["dimensions"].items() if name not in varied}
+    names = (*varied, *constants)
     numbers = [np.zeros((0, len(names)), dtype=np.float32)]
     shapes = [np.zeros((0, 32), dtype=np.float16)]
-    for entry in entries:
-        part = slice(entry.start, entry.stop)
-        z = arrays[f"{point}.x"][part] + 1j * arrays[f"{point}.y"][part]
-        good = arrays["passed"][part] & _are_closed(z)
+    stored = damaged = 0
+    for chunk in read_chunks(path):
+        tell()
+        damaged += bool(chunk.changed)
+        if damaged:
+            continue
+        stored += len(chunk.designs)
+        arrays = chunk.arrays
+        z = arrays[f"{point}.x"] + 1j * arrays[f"{point}.y"]
+        good = arrays["passed"] & _are_closed(z)
         own = coefficients(z[good][:, :-1])[0]
-        values = np.stack([arrays[name][part][good] for name in names], axis=1)
+        columns = {name: arrays[name][good] for name in varied} | constants
+        values = np.stack(np.broadcast_arrays(*columns.values()), axis=1)
         there = np.isfinite(own).all(axis=1)
         # chunk by chunk in the precision that is kept: a million designs fit in little memory
         numbers.append(values[there].astype(np.float32))
         shapes.append(np.ascontiguousarray(own[there]).view(float).astype(np.float16))
-        tell()
+    if damaged:
+        raise InputError(
+            f'damaged chunks of "{path}": {damaged}; repeat the command of its study, '
+            "which computes them again"
+        )
     found = np.concatenate(numbers)
     if not len(found):
         raise InputError(f'"{path}" has no closed path: keep it over a whole turn of the crank')
-    return AtlasFamily(
+    family = AtlasFamily(
         title=attributes["mechanism_name"],
         mechanism=known["mechanism"],
         point=point,
@@ -111,6 +112,7 @@ def _family_of_store(
         numbers=found,
         shapes=np.concatenate(shapes),
     )
+    return family, stored
 
 
 def _are_closed(z: ComplexArray) -> BoolArray:
