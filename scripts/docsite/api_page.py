@@ -65,7 +65,15 @@ _LISTED = {
     "core.equations": {"EquationSheet"},
     "core.drawing": {"Scene"},
     "families": {"Family", "FamilyLimits", "FamilyMotion"},
-    "writers": {"PlateOptions", "PlateStack", "plates", "program", "report", "robot", "workbook"},
+    "writers": {
+        "PlateOptions",
+        "PlateStack",
+        "write_plates",
+        "write_program",
+        "write_report",
+        "write_robot",
+        "write_workbook",
+    },
     "app": {"FilmOptions"},
 }
 

@@ -113,7 +113,7 @@ def test_where_dead_points_may_be_missing_the_reason_is_told() -> None:
 def test_lists_that_fail_in_an_interval_are_tried_elsewhere_then_told(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
-    monkeypatch.setattr("linkwork.core.foundation.rounding.REGULAR_CONDITION", 0.0)
+    monkeypatch.setattr("linkwork.circuits.circuit_list.REGULAR_CONDITION", 0.0)
     found = lw.example("rapier-drive-limited").circuits(certify=False)
     assert found.completeness is Completeness.NOT_PROVED
     assert found.message == (

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import re
 import unicodedata
 from dataclasses import replace
 from pathlib import Path
@@ -10,7 +11,7 @@ from pathlib import Path
 import click
 import pytest
 
-from linkwork import example_text, examples, load
+from linkwork import example_text, examples, load, wings
 from linkwork.core.commands.check import check_lines
 from linkwork.core.commands.main import linkwork
 from tests.cli.conftest import FILES, Run
@@ -245,42 +246,14 @@ def test_without_a_command_help_starts_with_the_way_to_a_first_result(run: Run) 
     assert done.stdout.startswith(FIRST_WORDS)
 
 
-def test_commands_are_listed_in_the_order_of_work(run: Run) -> None:
-    listed = run("--help").stdout.partition("Commands:\n")[2].splitlines()
-    names = [line.split()[0] for line in listed]
-    assert names == [
-        "check",
-        "equations",
-        "solve",
-        "quantities",
-        "sweep",
-        "configurations",
-        "circuits",
-        "forces",
-        "simulate",
-        "sensitivity",
-        "tolerance",
-        "design",
-        "draw",
-        "plot",
-        "animate",
-        "new",
-        "import",
-        "view",
-        "web",
-        "link",
-        "synthesize",
-        "atlas",
-        "code",
-        "export",
-        "robot",
-        "report",
-        "plates",
-        "study",
-        "compile",
-        "examples",
-        "schema",
-    ]
+def test_commands_are_listed_by_wing_without_loading_any(run: Run) -> None:
+    text = run("--help").stdout.partition("Files, equations, positions, the cycle:\n")[2]
+    names = [line.split()[0] for line in text.splitlines() if re.match(r"  [a-z]", line)]
+    assert names[:9] == [
+        "examples", "new", "check", "equations", "quantities", "solve", "sweep", "draw", "schema",
+    ]  # fmt: skip
+    assert set(names) == {name for wing in wings.WINGS for name in wing.commands}
+    assert "Forces and motion in time:\n  forces    Compute" in text
 
 
 def test_solve_prints_values_derivatives_points_and_evidence(run: Run) -> None:

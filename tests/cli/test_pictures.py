@@ -283,7 +283,6 @@ def test_unknowns_that_are_left_out_are_told(
     run: Run, monkeypatch: pytest.MonkeyPatch, folder: Path
 ) -> None:
     monkeypatch.setattr("linkwork.writers.charts.circuits.MOST_PANELS", 1)
-    monkeypatch.setattr("linkwork.circuits.commands.MOST_PANELS", 1)
     done = run("circuits", "four-bar.toml", "--draw", "a.svg")
     assert done.stdout.endswith("\nWrote a.svg: the first 1 of 2 unknowns; --of NAME chooses.\n")
     named = run("circuits", "four-bar.toml", "--draw", "a.svg", "--of", "mu")

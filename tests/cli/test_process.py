@@ -20,7 +20,9 @@ from tests.thinned import thinned
 
 #: Nothing is followed when the position asked for is the guess's own.
 FOR_MOTION = {
-    f"linkwork._dropped.{name}" for name in ("branch_tracking", "curve_tracing", "path_proof")
+    "linkwork.core.motion.following",
+    "linkwork.core.numerics.curve_tracing",
+    "linkwork.circuits.failure.failing",
 }
 HEAVY = {"matplotlib", "networkx", "numba", "pandas", "rich", "scipy", "xarray"}
 
@@ -77,7 +79,7 @@ def test_an_interrupt_while_the_program_is_imported_is_quiet(environment: dict[s
         "import sys\n"
         "class Interrupted:\n"
         "    def find_spec(self, name, *_):\n"
-        "        if name == 'numpy': raise KeyboardInterrupt\n"
+        "        if name == 'linkwork.core.commands.main': raise KeyboardInterrupt\n"
         "sys.meta_path.insert(0, Interrupted())\n"
         "from linkwork.__main__ import main\n"
         "main()\n"
@@ -95,7 +97,7 @@ def test_an_interrupt_of_executed_text_has_the_exit_code_too(
         "import sys\n"
         "class Interrupted:\n"
         "    def find_spec(self, name, *_):\n"
-        "        if name == 'numpy': exec('raise KeyboardInterrupt')\n"
+        "        if name.endswith('commands.main'): exec('raise KeyboardInterrupt')\n"
         "sys.meta_path.insert(0, Interrupted())\n"
         "from linkwork.__main__ import main\n"
         "main()\n"
@@ -112,7 +114,7 @@ def test_an_interrupted_program_does_what_is_registered_for_its_end_and_deletes_
     """Deleting everything takes longer than most interrupted work once compiled code is loaded."""
     program = (
         "import atexit, sys, types\n"
-        "from linkwork.core.commands import interrupts\n"
+        "from linkwork.core.commands import terminal as interrupts\n"
         "class Deleted:\n"
         "    def __del__(self): print('deleted')\n"
         "kept = Deleted()\n"
@@ -155,7 +157,7 @@ def test_an_interrupt_that_a_library_loses_is_one_all_the_same(
 ) -> None:
     program = (
         "import os, signal, sys, time\n"
-        "import linkwork.families.commands as command\n"
+        "import linkwork.families.family as command\n"
         "def compiling(tell):\n"
         "    try:\n"
         "        os.kill(os.getpid(), signal.SIGINT)\n"

@@ -52,15 +52,16 @@ COMMANDS = [
     "configurations", "circuits", "circuits --draw a.svg", "sensitivity --of A.x",
     "draw -o a.svg", "plot -o a.svg", "plot -o a.svg --kind branches",
     "plot -o a.svg --kind circuits",
-    "animate -o a.html", "code -o a.c", "export --as pmks", "robot -o a.urdf",
-    "report -o a.html", "report -o a.md", "plates -o a.svg", "link",
+    "animate -o a.html", "export -o a.c", "export pmks", "export -o a.urdf",
+    "export report -o a.html", "export -o a.md", "export plates -o a.svg", "link",
 ]  # fmt: skip
 
 
 def _run(text: str, command: str) -> str:
     Path("bar.toml").write_text(text, encoding="utf-8")
-    name, *options = command.split()
-    ended = CliRunner().invoke(linkwork, [name, "bar.toml", *options])
+    name, dash, rest = command.partition(" -")
+    options = f"{dash}{rest}".split()
+    ended = CliRunner().invoke(linkwork, [*name.split(), "bar.toml", *options])
     assert ended.exit_code == 0, ended.output
     return ended.output
 

@@ -111,7 +111,7 @@ def test_a_command_of_eleven_objects_keeps_their_order() -> None:
 
 def test_an_import_does_not_depend_on_the_order_of_sets() -> None:
     script = (
-        "import sys; from linkwork.readers import read_foreign as read\n"
+        "import sys; from linkwork.readers.formats import read_foreign as read\n"
         "found = read(sys.argv[1].encode(), 'chain.pyslvs'); print(found.linkage, found.left_out)"
     )
     seen = {

@@ -129,7 +129,7 @@ def test_what_has_no_formulas_is_refused_with_the_reason(tmp_path: Path) -> None
         "piece by piece"
     )
     with pytest.raises(lw.InputError) as refused:
-        read_example("four-bar").write(tmp_path / "bar.java")
+        read_example("four-bar").write(tmp_path / "bar.java", kind="program")
     assert "the suffix of a program is one of .py (Python), .m (Octave and MATLAB)" in str(
         refused.value
     )

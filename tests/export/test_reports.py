@@ -20,6 +20,7 @@ import linkwork as lw
 from linkwork import example_text
 from linkwork.core.commands.main import linkwork
 from linkwork.core.results.listing.motion_listing import Column
+from linkwork.writers.report import gathering
 from linkwork.writers.report.document import (
     Block,
     Document,
@@ -50,7 +51,7 @@ _SHORT = 'sections = ["summary", "drawing", "equations", "motion", "proof", "fil
 def _found(name: str, *sections: str) -> Findings:
     mechanism = coarse(read_example(name), 12)
     template = Template(sections=sections)
-    found: Findings = mechanism.findings(template, None, None, lambda part: None)
+    found: Findings = findings(mechanism, template, None, None, lambda part: None)
     return found
 
 
@@ -59,7 +60,7 @@ def _document(name: str, *sections: str) -> Document:
 
 
 def _of(mechanism: Any, template: Template) -> Document:
-    return document_of(mechanism.findings(template, None, None, lambda part: None), template)
+    return document_of(findings(mechanism, template, None, None, lambda part: None), template)
 
 
 def _section(document: Document, title: str) -> list[Block]:
@@ -347,7 +348,7 @@ def _proof(name: str) -> str:
 def test_tolerances_are_those_of_the_results() -> None:
     mechanism = coarse(read_example("slider-crank"), 4).changed(tolerances={"B A": 0.05})
     template = Template(sections=("tolerances",), tolerances_of=("d",))
-    found = mechanism.findings(template, 60, None, lambda part: None)
+    found = findings(mechanism, template, 60, None, lambda part: None)
     (contribution,) = _tables(document_of(found, template)).values()
     share = lw.design.tolerance(mechanism, "d", at=60).contributions[0]
     assert contribution.columns[0].cells == [share.name]
@@ -374,7 +375,7 @@ def test_a_template_that_does_not_fit_is_refused_before_any_computation(
 ) -> None:
     (tmp_path / "t.toml").write_text(f'sections = ["motion", "tolerances"]\n{wrong}\n')
     bar = coarse(read_example("four-bar"), 4).changed(tolerances={"A B": 0.05})
-    monkeypatch.setattr(lw.Mechanism, "findings", lambda *_: pytest.fail("it computes"))
+    monkeypatch.setattr(gathering, "findings", lambda *_: pytest.fail("it computes"))
     with pytest.raises(lw.InputError, match=r'no "rokcer"|every = 37: the motion has no two rows'):
         bar.write(tmp_path / "bar.html", template=tmp_path / "t.toml", kind="report")
 
@@ -416,7 +417,7 @@ def test_a_mechanism_without_input_has_its_position() -> None:
 def test_a_mechanism_that_does_not_close_says_why() -> None:
     bar = coarse(read_example("four-bar"), 2).with_dimensions({"A B": 30, "O4 B": 20})
     template = Template(sections=("summary", "drawing", "plots"))
-    found = bar.findings(template, None, None, lambda part: None)
+    found = findings(bar, template, None, None, lambda part: None)
     document = document_of(found, template)
     assert _facts(document, "Summary")["why"] == found.position.failure.what
     assert _facts(document, "Sections left out")["Drawing"] == "no position was found"
@@ -494,7 +495,7 @@ def test_unknown_templates_formats_and_packages_are_refused(
     with pytest.raises(lw.InputError, match=r"a report is one of \.html, \.pdf, \.docx, \.md"):
         bar.write(tmp_path / "x.odt", kind="report")
     (tmp_path / "short.toml").write_text('sections = ["versions"]')
-    monkeypatch.setattr(lw.Mechanism, "findings", lambda *_: pytest.fail("it computes"))
+    monkeypatch.setattr(gathering, "findings", lambda *_: pytest.fail("it computes"))
     for suffix, package in (("pdf", "typst"), ("docx", "docx")):
         monkeypatch.setitem(sys.modules, package, None)
         with pytest.raises(lw.MissingPackageError, match=r'pip install "linkwork\[report\]"'):

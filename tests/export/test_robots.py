@@ -189,7 +189,7 @@ def test_a_start_outside_of_the_table_is_said() -> None:
 )
 def test_refusals_say_why(name: str, file: str, reason: str, tmp_path: Path) -> None:
     with pytest.raises(lw.InputError) as raised:
-        read_example(name).write(tmp_path / file)
+        read_example(name).write(tmp_path / file, kind="robot")
     assert reason in str(raised.value)
     assert not (tmp_path / file).exists()
 

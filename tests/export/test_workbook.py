@@ -316,7 +316,7 @@ def test_another_mechanisms_motion_is_refused(tmp_path: Path) -> None:
 
 def test_another_kind_of_file_is_refused(tmp_path: Path) -> None:
     with pytest.raises(InputError, match=r"a workbook needs the suffix \.xlsx"):
-        lw.example("four-bar").write(tmp_path / "x.xls")
+        lw.example("four-bar").write(tmp_path / "x.xls", kind="workbook")
 
 
 def test_without_xlsxwriter_the_install_command_is_told(

@@ -18,7 +18,7 @@ from linkwork.core.foundation.arrays import Array, allocate_aligned
 from linkwork.core.record.printing import trial_source
 from linkwork.core.record.recorder import LANES, SOURCES, Op
 from linkwork.families.by_kernels import block_parts
-from linkwork.families.compiled import interpreter as execution
+from linkwork.families.compiled import execution
 from linkwork.families.compiled.code_cache import is_cached, load_compiled
 from linkwork.families.compiled.compiling import CodeFiles
 from linkwork.families.compiled.execution import Execution

@@ -80,9 +80,7 @@ def test_a_change_point_is_located_once(name: str, monkeypatch: pytest.MonkeyPat
         located.append(locate(*given))
         return located[-1]
 
-    for owner in ("curve_crossing", "curve_tracing"):
-        path = f"linkwork._dropped.{owner}.crossing_beyond"
-        monkeypatch.setattr(path, counted)
+    monkeypatch.setattr("linkwork.core.numerics.curve_tracing.crossing_beyond", counted)
     drive = Drive.of_circuits(lw.example(name).model)
     explorer = _visited(explorer_of(drive), _seeds(drive))
     assert sum(one is not None for one in located) == len(explorer.crossings)

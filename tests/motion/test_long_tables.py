@@ -253,7 +253,7 @@ def test_compiled_code_is_loaded_when_enough_was_solved_without_it() -> None:
         "m = lw.example('four-bar')\n"
         "m.sweep()\n"
         "assert 'numba' not in sys.modules\n"
-        "from linkwork.core.motion import by_kernels\n"
+        "from linkwork.families import by_kernels\n"
         "print(by_kernels.kernels_pay(m.model, 10**6), 'numba' in sys.modules)\n"
         "import linkwork.families.march.independent\n"
         "print(by_kernels.kernels_pay(m.model, 20), by_kernels.kernels_pay(m.model, 361))\n"
@@ -269,7 +269,7 @@ def test_many_small_tables_count_like_a_long_one() -> None:
     code = (
         "import linkwork as lw\n"
         "import linkwork.families.march.independent\n"
-        "from linkwork.core.motion import by_kernels\n"
+        "from linkwork.families import by_kernels\n"
         "one, other = lw.example('four-bar').model, lw.example('jansen-leg').model\n"
         "print([by_kernels.kernels_pay(one, 361) for _ in range(9)].index(True))\n"
         "print(by_kernels.kernels_pay(other, 361))\n"
@@ -325,11 +325,11 @@ def test_every_source_that_is_compiled_has_a_part_in_the_digest(tmp_path: Path) 
         return done.stdout.strip()
 
     assert digest() == sources_digest().hex()
-    for name in ("march/step_trial.py", "program/interpreter.py"):
-        with (changed / "kernels" / name).open("a", encoding="utf-8") as file:
+    for name in ("march/step_trial.py", "compiled/interpreter.py"):
+        with (changed / "families" / name).open("a", encoding="utf-8") as file:
             file.write("# another version\n")
         assert digest() != sources_digest().hex()
-        shutil.copy(package / "kernels" / name, changed / "kernels" / name)
+        shutil.copy(package / "families" / name, changed / "families" / name)
 
 
 def test_numba_keeps_the_digest_by_which_compiled_code_is_known() -> None:

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 from linkwork.core.foundation.loading import loader
 
 if TYPE_CHECKING:
-    from linkwork.design.counterweights import (
+    from linkwork.design.balancing import (
         balanced as balanced,
         counterweights as counterweights,
     )
@@ -25,8 +25,7 @@ if TYPE_CHECKING:
         InflectionCircle as InflectionCircle,
         MotorCheck as MotorCheck,
     )
-    from linkwork.design.sensitivity import gradient as gradient, sensitivity as sensitivity
-    from linkwork.design.tolerance import tolerance as tolerance
+    from linkwork.design.sensitivities import gradient as gradient, sensitivity as sensitivity
     from linkwork.design.tolerance_results import (
         Contribution as Contribution,
         Sampled as Sampled,
@@ -34,5 +33,6 @@ if TYPE_CHECKING:
         SensitivityStatus as SensitivityStatus,
         Tolerance as Tolerance,
     )
+    from linkwork.design.tolerances import tolerance as tolerance
 else:
     __getattr__ = loader(__name__)

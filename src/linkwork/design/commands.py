@@ -44,7 +44,7 @@ from linkwork.core.results.listing.motion_listing import Column, short, signific
 from linkwork.core.results.motion import Motion
 from linkwork.core.results.tables import driven_text
 from linkwork.design.listing import contribution_columns, sampled_fields, tolerance_fields
-from linkwork.design.sensitivity import is_of_motion
+from linkwork.design.sensitivities import is_of_motion
 from linkwork.design.tolerance_results import Sensitivity, SensitivityStatus, Tolerance
 
 # ----------------------------------------------------------------------

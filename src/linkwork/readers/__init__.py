@@ -8,7 +8,7 @@ from linkwork.core.foundation.loading import loader
 
 if TYPE_CHECKING:
     from linkwork.readers.assembly import Exported as Exported, LeftOut as LeftOut
-    from linkwork.readers.imported import (
+    from linkwork.readers.importing import (
         Imported as Imported,
         exported as exported,
         imported as imported,

@@ -15,7 +15,7 @@ from linkwork.core.commands.terminal import (
 )
 from linkwork.core.textfile.writer import write_text as text_of
 from linkwork.readers.formats import FORMATS
-from linkwork.readers.imported import Imported, imported
+from linkwork.readers.importing import Imported, imported
 
 __all__ = ["import_command"]
 

@@ -9,14 +9,14 @@ from linkwork.core.foundation.loading import loader
 if TYPE_CHECKING:
     from linkwork.writers.plates.plate import PlateOptions as PlateOptions, PlateStack as PlateStack
     from linkwork.writers.report.findings import Template as Template
-    from linkwork.writers.report.gathering import report as report
+    from linkwork.writers.report.gathering import write_report as write_report
     from linkwork.writers.writing import (
         Writer as Writer,
-        plates as plates,
-        program as program,
-        robot as robot,
-        workbook as workbook,
         write as write,
+        write_plates as write_plates,
+        write_program as write_program,
+        write_robot as write_robot,
+        write_workbook as write_workbook,
     )
 else:
     __getattr__ = loader(__name__)

@@ -50,14 +50,14 @@ from linkwork.core.foundation.statuses import ChangePointPolicy
 from linkwork.core.mechanism.dimensions import Number
 from linkwork.core.results.listing.motion_listing import Column
 from linkwork.readers.formats import WRITERS
-from linkwork.readers.imported import exported
+from linkwork.readers.importing import exported
 from linkwork.writers.charts.plotting import CIRCUIT_KINDS, PlotKind, circuits_plot, motion_plot
 from linkwork.writers.code.languages import code_of, language_of
 from linkwork.writers.plates.files import check_plate_file, plates_of
 from linkwork.writers.plates.plate import PlateOptions, PlateStack
 from linkwork.writers.plates.stack import stack_of
 from linkwork.writers.report.findings import template_of
-from linkwork.writers.report.gathering import report
+from linkwork.writers.report.gathering import write_report
 from linkwork.writers.report.report import check_report_file
 from linkwork.writers.robot.files import check_robot_file, robot_of
 from linkwork.writers.writing import kind_of, writers
@@ -274,7 +274,7 @@ def report_command(
     mechanism = read_mechanism(file, changes)
     values = input_values(mechanism, at)
     with progress("writing the report") as tell:
-        written = report(
+        written = write_report(
             mechanism,
             output,
             values,

@@ -14,12 +14,12 @@ from linkwork.core.foundation.errors import InputError, UnknownNameError, choice
 from linkwork.core.foundation.files import as_path, save_bytes, save_text
 from linkwork.core.foundation.values import check_flags, given_or
 from linkwork.core.results.motion import Motion
-from linkwork.readers.imported import exported
+from linkwork.readers.importing import exported
 from linkwork.writers.code.languages import code_of
 from linkwork.writers.plates.files import check_plate_file, plates_of
 from linkwork.writers.plates.plate import PlateOptions, PlateStack
 from linkwork.writers.plates.stack import stack_of
-from linkwork.writers.report.gathering import report as report
+from linkwork.writers.report.gathering import write_report
 from linkwork.writers.robot.files import check_robot_file, robot_of
 from linkwork.writers.workbook.workbook import workbook_of
 
@@ -32,7 +32,7 @@ class Writer:
     write: Callable[..., Any]
 
 
-def workbook(
+def write_workbook(
     mechanism: Mechanism, path: str | Path, motion: Motion | None = None
 ) -> tuple[str, ...]:
     """Write a sweep as an Excel workbook whose formulas solve the cycle again.
@@ -72,7 +72,7 @@ def workbook(
     return written.notices
 
 
-def program(mechanism: Mechanism, path: str | Path, motion: Motion | None = None) -> None:
+def write_program(mechanism: Mechanism, path: str | Path, motion: Motion | None = None) -> None:
     """Write the solver as a program in another language, which needs no Linkwork.
 
     Parameters
@@ -104,7 +104,7 @@ def program(mechanism: Mechanism, path: str | Path, motion: Motion | None = None
     save_text(text, path)
 
 
-def robot(
+def write_robot(
     mechanism: Mechanism,
     path: str | Path,
     at: float | Mapping[str, float] | None = None,
@@ -151,7 +151,7 @@ def robot(
     save_text(text, path)
 
 
-def plates(
+def write_plates(
     mechanism: Mechanism,
     path: str | Path,
     motion: Motion | None = None,
@@ -222,11 +222,11 @@ def _text_of(format: str) -> Callable[..., Any]:
 
 
 WRITERS: Mapping[str, Writer] = {
-    "workbook": Writer(suffixes=(".xlsx",), write=workbook),
-    "program": Writer(suffixes=(".py", ".m", ".c", ".js", ".st"), write=program),
-    "plates": Writer(suffixes=(".dxf", ".stl", ".3mf", ".step"), write=plates),
-    "robot": Writer(suffixes=(".mjcf", ".sdf", ".urdf"), write=robot),
-    "report": Writer(suffixes=(".docx", ".md"), write=report),
+    "workbook": Writer(suffixes=(".xlsx",), write=write_workbook),
+    "program": Writer(suffixes=(".py", ".m", ".c", ".js", ".st"), write=write_program),
+    "plates": Writer(suffixes=(".dxf", ".stl", ".3mf", ".step"), write=write_plates),
+    "robot": Writer(suffixes=(".mjcf", ".sdf", ".urdf"), write=write_robot),
+    "report": Writer(suffixes=(".docx", ".md"), write=write_report),
     "pmks": Writer(write=_text_of("pmks")),
     "pylinkage": Writer(write=_text_of("pylinkage")),
     "pyslvs": Writer(write=_text_of("pyslvs")),

@@ -237,7 +237,7 @@ def _traced(monkeypatch: pytest.MonkeyPatch) -> list[TracedCurve]:
         traced.append(trace_boldly(*given, **options))
         return traced[-1]
 
-    monkeypatch.setattr("linkwork.circuits.branches.trace_boldly", counted)
+    monkeypatch.setattr("linkwork.circuits.arcs.trace_boldly", counted)
     return traced
 
 

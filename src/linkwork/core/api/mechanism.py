@@ -868,7 +868,7 @@ class Mechanism:
             Instead: ``workbook``, ``program``, ``plates``, ``robot``, ``report``, ``pmks``,
             ``pylinkage``, ``pyslvs``.
         **options
-            Those of the kind; see the function of its name in :mod:`linkwork.writers`.
+            Those of the kind: of ``write_plates``, ``write_report``, … in :mod:`linkwork.writers`.
 
         Returns
         -------

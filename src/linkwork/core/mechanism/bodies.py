@@ -297,7 +297,9 @@ class Guide(Figure):
 
 
 class CamOutline(Contour):
-    """The outline of a cam."""
+    """The outline of a cam; the wing of contacts draws it."""
+
+    wing: ClassVar[str] = "linkwork.contacts"
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -308,6 +310,7 @@ class Follower(Figure):
     """
 
     shown_again: ClassVar[bool] = True
+    wing: ClassVar[str] = "linkwork.contacts"
 
     link: str
     point: str

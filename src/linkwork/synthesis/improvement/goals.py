@@ -24,7 +24,7 @@ from linkwork.core.results.quantities.definition import Asked, AskedOfMotion, Gr
 from linkwork.core.results.quantities.registry import MOTION_QUANTITIES
 from linkwork.core.results.quantities.rows import TRANSMISSION_ANGLE
 from linkwork.core.results.quantity import Kind
-from linkwork.design.sensitivity import LIMITS
+from linkwork.design.sensitivities import LIMITS
 from linkwork.families.located_extremes import interpolated_extremes, parts_of, step_of
 from linkwork.synthesis.improvement.lanes import LanePositions
 from linkwork.synthesis.improvement.settings import Goal

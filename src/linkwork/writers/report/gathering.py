@@ -10,7 +10,7 @@ from linkwork.core import motion, textfile
 from linkwork.core.api.mechanism import Mechanism
 from linkwork.core.foundation.errors import InputError, UnknownNameError
 from linkwork.core.foundation.files import as_path
-from linkwork.design.tolerance import tolerance
+from linkwork.design.tolerances import tolerance
 from linkwork.forces.functions import stalls
 from linkwork.forces.results import ForceStatus
 from linkwork.writers.report.findings import Findings, Template, template_of
@@ -39,7 +39,7 @@ _HIDING = {
 }
 
 
-def report(
+def write_report(
     mechanism: Mechanism,
     path: str | Path,
     at: float | Mapping[str, float] | None = None,

@@ -89,6 +89,8 @@ def mesh(name: str, links: tuple[str, str], reactions: Reactions) -> None:
     reactions.follow(f"{name}.radial", tangent, "tan(p)*abs(t)", names, acts)
 
 
+@part_numbers.register(Gear)
+@part_numbers.register(Rack)
 def pressure(part: ToothedPart, linkage: Linkage) -> Iterator[tuple[str, float, Kind, str]]:
     """The pressure angle."""
     angle = part.pressure(linkage) / linkage.angle.radians

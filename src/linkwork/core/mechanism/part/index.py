@@ -66,8 +66,8 @@ PARTS: Mapping[str, type[Part]] = {field.name: _KINDS[field.name] for field in f
 
 def open_room(kind: type, room: str) -> None:
     """Import what registers the functions of a kind of parts in a room, such as its equations."""
-    package = kind.__module__.rpartition(".")[0]
-    if package != __package__:
+    package = getattr(kind, "wing", kind.__module__.rpartition(".")[0])
+    if not package.startswith("linkwork.core"):
         import_module(f"{package}.{room}")
 
 

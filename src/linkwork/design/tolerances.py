@@ -25,7 +25,7 @@ from linkwork.core.mechanism.varied_numbers import (
 from linkwork.core.motion.model import Model, model_of
 from linkwork.core.results.motion import Motion
 from linkwork.core.results.position import Position
-from linkwork.design.sensitivity import (
+from linkwork.design.sensitivities import (
     LIMITS,
     is_of_motion,
     play_of_motion,
