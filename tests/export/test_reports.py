@@ -419,6 +419,7 @@ def test_a_mechanism_that_does_not_close_says_why() -> None:
     template = Template(sections=("summary", "drawing", "plots"))
     found = findings(bar, template, None, None, lambda part: None)
     document = document_of(found, template)
+    assert found.position.failure is not None
     assert _facts(document, "Summary")["why"] == found.position.failure.what
     assert _facts(document, "Sections left out")["Drawing"] == "no position was found"
 
