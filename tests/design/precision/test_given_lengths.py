@@ -172,7 +172,7 @@ _GIVEN = {"fixed_pivots": [(0.0, 0.0), (100.0, 0.0)], "lengths": {"B P": 60}}
     ("changes", "told"),
     [
         (
-            {"_MOST": 300, "_MOST_IN_NUMPY": 300},
+            {"_MOST_PATHS": 300, "_MOST_IN_NUMPY": 300},
             r"from those of 8 tasks; not all solutions .* known: after 300 paths, which found",
         ),
         ({"_ROUNDS": 1, "_SEED": 12}, r"tasks; not all solutions .*: the trace test denies "),
@@ -201,7 +201,7 @@ def test_a_spent_budget_is_kept_until_more_may_be_spent(
     monkeypatch: pytest.MonkeyPatch, tmp_path: Path
 ) -> None:
     monkeypatch.setenv("LINKWORK_CACHE", str(tmp_path))
-    for name in ("_MOST", "_MOST_IN_NUMPY"):
+    for name in ("_MOST_PATHS", "_MOST_IN_NUMPY"):
         monkeypatch.setattr(own_start_sets, name, 20)
     problem = PrecisionProblem(poses=1, points=1, pivots=2, lengths=(("A", "B"),))
     monkeypatch.setattr(own_start_sets, "_KNOWN", {})

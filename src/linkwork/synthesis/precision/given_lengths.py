@@ -45,7 +45,7 @@ _POLISH = 12  # and at the end
 _SETTLED = 1e-9  # relative: the last correction of a solution
 _LEAST_SIZE = 0.1  # of the size of the positions: as for other precision positions
 _DISTINCT = 1e-6  # relative difference of linkages
-_GIVEN_LENGTHS_MOST = 400  # four-bars that are moved, and
+_MOST_STARTS = 400  # four-bars that are moved, and
 _PROVED = 120  # those that are proved
 
 
@@ -70,8 +70,8 @@ def four_bars_with_lengths(
     if not len(given.pivots):
         # either leg may be the one whose length is given
         starts = np.concatenate([starts, exchange_legs(starts)])
-    if len(starts) > _GIVEN_LENGTHS_MOST:
-        starts = starts[np.linspace(0, len(starts) - 1, _GIVEN_LENGTHS_MOST).astype(int)]
+    if len(starts) > _MOST_STARTS:
+        starts = starts[np.linspace(0, len(starts) - 1, _MOST_STARTS).astype(int)]
     with np.errstate(all="ignore"):
         moved = _moved(given, starts)
     proofs = []
@@ -172,7 +172,7 @@ def _held(given: PrecisionPositions, linkage: ComplexArray) -> tuple[HeldValue, 
 _FOLDER, _VERSION = "start_linkages", 1  # of the random members and of the data stored of them
 _SEED = 11
 _SMALL = 100  # paths that are expected; more of them are compiled as soon as that saves time
-_OWN_START_SETS_MOST = 250_000  # paths, up to a minute and a half of two cores compiled,
+_MOST_PATHS = 250_000  # paths, up to a minute and a half of two cores compiled,
 _MOST_IN_NUMPY = 10_000  # and as long without a compiler
 _ROUNDS, _DIRECTIONS = 8, 2  # trace tests, and directions of each
 _SINGULAR = 1e12  # condition number of a random member
@@ -221,7 +221,7 @@ def own_member(
     """
     known = _KNOWN.get(problem)
     if known is None:
-        most = _OWN_START_SETS_MOST if compiled_pays(_OWN_START_SETS_MOST) else _MOST_IN_NUMPY
+        most = _MOST_PATHS if compiled_pays(_MOST_PATHS) else _MOST_IN_NUMPY
         known = _stored(problem, most) or _solved(problem, most, progress)
         _KNOWN[problem] = known
     return known
