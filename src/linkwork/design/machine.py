@@ -386,7 +386,7 @@ def inflection_circle(
     at : number or Mapping[str, number], optional
         Input value(s) in file units.
     configuration : str, optional
-        As in :meth:`Mechanism.solve`.
+        As in :meth:`~linkwork.Mechanism.solve`.
 
     Raises
     ------

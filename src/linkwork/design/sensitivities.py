@@ -377,7 +377,7 @@ def sensitivity(
         Numbers that a family can vary: ``"O2 A"``, ``"O4.x"``, ``"a2"``, ``"d.offset"``; by
         default all that the file writes as plain numbers.
     configuration : str, optional
-        As in :meth:`Mechanism.solve`.
+        As in :meth:`~linkwork.Mechanism.solve`.
     motion : Motion, optional
         Instead of the table: a motion of this mechanism, solved already.
 

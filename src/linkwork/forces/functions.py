@@ -19,7 +19,7 @@ def stalls(
     Parameters
     ----------
     configuration : str, optional
-        As in :meth:`Mechanism.solve`.
+        As in :meth:`~linkwork.Mechanism.solve`.
     motion : Motion, optional
         Instead of the table: a motion of this mechanism, solved already.
 
@@ -54,7 +54,7 @@ def equilibria(
     Parameters
     ----------
     at, change_points
-        As in :meth:`Mechanism.simulate`.
+        As in :meth:`~linkwork.Mechanism.simulate`.
 
     Returns
     -------
@@ -64,7 +64,7 @@ def equilibria(
     Raises
     ------
     InputError
-        As :meth:`Mechanism.simulate`.
+        As :meth:`~linkwork.Mechanism.simulate`.
 
     Examples
     --------

@@ -170,7 +170,8 @@ def exported(
         ``pmks`` (a link of PMKS+, coordinates in thousandths), ``pylinkage`` (JSON) or
         ``pyslvs`` (an expression).
     at : float or mapping, optional
-        The input of the position that is written; by default that of :meth:`Mechanism.solve`.
+        The input of the position that is written; by default that of
+        :meth:`~linkwork.Mechanism.solve`.
     configuration : str, optional
         The configuration of that position.
 

@@ -42,7 +42,7 @@ def write_workbook(
     path : str or Path
         The .xlsx file.
     motion : Motion, optional
-        A sweep of this mechanism; by default :meth:`Mechanism.sweep`.
+        A sweep of this mechanism; by default :meth:`~linkwork.Mechanism.sweep`.
 
     Returns
     -------
@@ -82,7 +82,7 @@ def write_program(mechanism: Mechanism, path: str | Path, motion: Motion | None 
         ``.c`` (C99), ``.js``, ``.st`` (structured text of IEC 61131-3).
     motion : Motion, optional
         A sweep of this mechanism, whose table the program computes again; by default
-        :meth:`Mechanism.sweep`.
+        :meth:`~linkwork.Mechanism.sweep`.
 
     Raises
     ------
@@ -121,12 +121,12 @@ def write_robot(
         ``.sdf`` (with all joints), ``.urdf`` (a tree whose joints follow the driven one).
     at : float or mapping, optional
         The input of the start position, at which all joint values are zero; by default that of
-        :meth:`Mechanism.solve`.
+        :meth:`~linkwork.Mechanism.solve`.
     configuration : str, optional
         The configuration of the start position.
     motion : Motion, optional
         Of URDF, the sweep through the start position that gives limits and polynomials; by
-        default :meth:`Mechanism.sweep`.
+        default :meth:`~linkwork.Mechanism.sweep`.
 
     Raises
     ------
@@ -168,7 +168,7 @@ def write_plates(
         The file; its suffix selects the format: ``.dxf``, ``.svg``, ``.stl``, ``.3mf`` or
         ``.step``.
     motion : Motion, optional
-        The sweep in which nothing may collide; by default :meth:`Mechanism.sweep`.
+        The sweep in which nothing may collide; by default :meth:`~linkwork.Mechanism.sweep`.
     options : PlateOptions, optional
         Widths, pins, clearance, kerf and thickness.
     layout : bool
@@ -261,7 +261,7 @@ def kind_of(path: str | Path) -> str:
 
 
 def write(mechanism: Mechanism, path: str | Path, kind: str | None = None, **options: Any) -> Any:
-    """Write a mechanism to a file; see :meth:`Mechanism.write`."""
+    """Write a mechanism to a file; see :meth:`~linkwork.Mechanism.write`."""
     known, kind = writers(), kind_of(path) if kind is None else kind
     if kind not in known:
         raise UnknownNameError(f'there is no kind of file "{kind}" {choices("kinds", known, kind)}')

@@ -26,7 +26,7 @@ def load(path: str | Path) -> Mechanism:
     ----------
     path : str or Path
         A TOML file; if there is none of this name, a link or its fragment ``#lw1=…``, as
-        :meth:`Mechanism.link` returns it. Nothing is read from the network.
+        :meth:`~linkwork.Mechanism.link` returns it. Nothing is read from the network.
 
     Returns
     -------

@@ -65,7 +65,7 @@ def write_report(
     template : str or Path
         ``engineer``, ``student``, or a template file, which names the sections.
     configuration : str, optional
-        The configuration or branch of the motion, as in :meth:`Mechanism.solve`.
+        The configuration or branch of the motion, as in :meth:`~linkwork.Mechanism.solve`.
     title, author, institution, date : str, optional
         The head of the report, instead of that in the template.
     progress : callable, optional
