@@ -15,7 +15,7 @@ TREE = Path(__file__).resolve().parent.parent
 PACKAGE_DATA = (
     "linkwork/py.typed",
     "linkwork/library/*.toml",
-    "linkwork/core/mechanism/*.toml",
+    "linkwork/circuits/*.toml",
     "linkwork/core/textfile/*.json",
     "linkwork/app/static/*.css",
     "linkwork/app/static/*.js",

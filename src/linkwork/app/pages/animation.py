@@ -368,8 +368,8 @@ def animate(
         Forces that a page draws as arrows at their points.
     sliders : sequence of str
         Numbers of the mechanism, by the names that :meth:`~linkwork.Mechanism.family` takes, that
-        can be changed in a page: it contains the solver of this mechanism, and proves every position that
-        it draws. It shows :meth:`~linkwork.Mechanism.sweep`.
+        can be changed in a page: it contains the solver of this mechanism, and proves every
+        position that it draws. It shows :meth:`~linkwork.Mechanism.sweep`.
     options : FilmOptions, optional
         Frames per second, number of positions and size of a film.
     progress : callable, optional
