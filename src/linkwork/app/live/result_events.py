@@ -7,8 +7,7 @@ import math
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from functools import partial
-from pathlib import Path, PurePath
-from tempfile import TemporaryDirectory
+from pathlib import PurePath
 
 import numpy as np
 
@@ -73,6 +72,7 @@ from linkwork.core.results.motion import Motion
 from linkwork.core.results.nearest_assembly import LinkEnd, NearestAssembly
 from linkwork.core.results.position import Iterate, Iterates, Position
 from linkwork.core.results.tables import csv_text
+from linkwork.writers.workbook.workbook import workbook_of
 
 _MEDIA_TYPES = {
     "toml": "application/toml",
@@ -154,7 +154,8 @@ def exported_file(
             page = motion_page({"motion": motion}, equations=equations, loops=loops)
             content = offline_page(page).encode()
         elif suffix == "xlsx":
-            content, notices = _workbook(mechanism, motion)
+            written = workbook_of(mechanism.model, motion)
+            content, notices = written.content, written.notices
         else:
             options = FilmOptions(theme="dark" if dark else "light")
             check_animation(f"film.{suffix}", options)
@@ -177,13 +178,6 @@ def _scene(mechanism: Mechanism, motion: Motion | None, row: int | None) -> Scen
     if not 0 <= shown < len(motion):
         raise InputError(f"there is no row {row}: the motion has {len(motion)}")
     return moving_scene(motion).at(shown)
-
-
-def _workbook(mechanism: Mechanism, motion: Motion) -> tuple[bytes, tuple[str, ...]]:
-    with TemporaryDirectory() as folder:
-        path = Path(folder) / "motion.xlsx"
-        notices = mechanism.write(path, motion=motion)
-        return path.read_bytes(), notices
 
 
 # ----------------------------------------------------------------------
