@@ -72,7 +72,6 @@ from linkwork.core.results.motion import Motion
 from linkwork.core.results.nearest_assembly import LinkEnd, NearestAssembly
 from linkwork.core.results.position import Iterate, Iterates, Position
 from linkwork.core.results.tables import csv_text
-from linkwork.writers.workbook.workbook import workbook_of
 
 _MEDIA_TYPES = {
     "toml": "application/toml",
@@ -154,6 +153,9 @@ def exported_file(
             page = motion_page({"motion": motion}, equations=equations, loops=loops)
             content = offline_page(page).encode()
         elif suffix == "xlsx":
+            # most visitors write none
+            from linkwork.writers.workbook.workbook import workbook_of
+
             written = workbook_of(mechanism.model, motion)
             content, notices = written.content, written.notices
         else:
