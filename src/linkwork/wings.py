@@ -17,6 +17,14 @@ from typing import Any
 GROUP = "linkwork.wings"
 
 
+@dataclass(frozen=True)
+class Writer:
+    """A kind of file: the place of its function of a mechanism and a path, and its suffixes."""
+
+    place: str
+    suffixes: tuple[str, ...] = ()
+
+
 @dataclass(frozen=True, kw_only=True)
 class Wing:
     """What a package adds to the core; places are written ``module:name``.
@@ -34,8 +42,8 @@ class Wing:
     commands : Mapping[str, str]
         Commands, each with a sentence for their list; the function of ``name`` is
         ``name_command`` in the module ``commands`` of the package.
-    writers : Mapping[str, str]
-        Kinds of files, with the place of their writers.
+    writers : Mapping[str, Writer]
+        Kinds of files by name.
     """
 
     module: str
@@ -43,7 +51,7 @@ class Wing:
     parts: Mapping[str, str] = field(default_factory=dict)
     quantities: tuple[str, ...] = ()
     commands: Mapping[str, str] = field(default_factory=dict)
-    writers: Mapping[str, str] = field(default_factory=dict)
+    writers: Mapping[str, Writer] = field(default_factory=dict)
 
 
 WINGS = (
@@ -117,7 +125,20 @@ WINGS = (
         title="Pictures and files for other programs",
         commands={
             "plot": "Plot columns, paths, hodographs, transmission angles or circuits.",
-            "export": "Write a workbook, program, report, plates, a robot, a text.",
+            "export": "Write a workbook, program, report, plates, robot or text.",
+        },
+        writers={
+            "workbook": Writer("linkwork.writers.workbook.workbook:write_workbook", (".xlsx",)),
+            "program": Writer(
+                "linkwork.writers.code.languages:write_program", (".py", ".m", ".c", ".js", ".st")
+            ),
+            "plates": Writer(
+                "linkwork.writers.plates.files:write_plates", (".dxf", ".stl", ".3mf", ".step")
+            ),
+            "robot": Writer("linkwork.writers.robot.files:write_robot", (".mjcf", ".sdf", ".urdf")),
+            "report": Writer(
+                "linkwork.writers.report.gathering:write_report", (".html", ".pdf", ".docx", ".md")
+            ),
         },
     ),
     Wing(
@@ -125,6 +146,10 @@ WINGS = (
         title="Files of other programs",
         commands={
             "import": "Read a mechanism from a file of another program.",
+        },
+        writers={
+            form: Writer(f"linkwork.readers.importing:write_{form}")
+            for form in ("pmks", "pylinkage", "pyslvs")
         },
     ),
     Wing(
@@ -161,7 +186,9 @@ def load(place: str) -> Any:
 
 def command(name: str) -> Any:
     """The function of a command; None if no wing has one of this name."""
-    for wing in wings():
+    # other packages are looked through only for a name that is none of ours: that takes time
+    known = WINGS if any(name in wing.commands for wing in WINGS) else wings()
+    for wing in known:
         if name in wing.commands:
             return load(f"{wing.module}.commands:{name}_command")
     return None

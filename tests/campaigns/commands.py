@@ -22,7 +22,6 @@ from time import process_time
 from typing import Any
 from unittest.mock import patch
 
-import click
 from click.testing import CliRunner
 
 import linkwork as lw
@@ -30,6 +29,7 @@ from linkwork.app.live.bench import Bench
 from linkwork.app.live.mechanism_file import MechanismFile
 from linkwork.core.commands.main import linkwork as program
 from linkwork.synthesis.solvers.solving import solve_task
+from linkwork.wings import WINGS
 from tests.campaigns.command_variants import MECHANISMS, VARIANTS, inputs_of, variant_text
 from tests.campaigns.fuzzing.witness import LIMIT, SHOWS_PROGRESS, Witness
 
@@ -64,12 +64,12 @@ plot -o a.svg --kind hodograph | plot -o a.svg --kind transmission
 plot -o a.svg --kind circuits | plot -o a.svg --kind branches
 plot -o a.tikz --against time | plot -o a.svg --of LAST --against LAST --wrapped
 animate -o a.html | animate -o a.html --all | animate -o a.gif --rows 2
-code -o a.py | code -o a.m | code -o a.c | code -o a.js | code -o a.st
-export --as pmks | export --as pylinkage | export --as pyslvs
-robot -o a.mjcf | robot -o a.urdf | robot -o a.sdf
-report -o a.html | report -o a.docx | report -o a.md | report -o a.pdf --template student
-plates -o a.dxf --layout --labels --bill a.csv
-plates -o a.svg | plates -o a.stl | plates -o a.3mf | plates -o a.step
+export -o a.py | export -o a.m | export -o a.c | export -o a.js | export -o a.st
+export pmks | export pylinkage | export pyslvs | export -o a.xlsx
+export -o a.mjcf | export -o a.urdf | export -o a.sdf
+export -o a.html | export -o a.docx | export -o a.md | export -o a.pdf --template student
+export -o a.dxf --layout --labels --bill a.csv
+export plates -o a.svg | export -o a.stl | export -o a.3mf | export -o a.step
 link | link --text --json | link --app https://a.org --embed | link --app https://a.org --qr a.svg
 study -o a.zarr --force --quiet --workers 1
 """
@@ -132,8 +132,10 @@ def _commands_for(text: str) -> Iterator[list[str]]:
     }
     for command in filter(None, commands):
         for filled in _filled(command, known):
-            first, *options = shlex.split(filled)
-            yield [first, "plan.toml" if first == "study" else "m.toml", *options]
+            words = shlex.split(filled)
+            named = next((k for k, word in enumerate(words) if word[:1] == "-"), len(words))
+            file = "plan.toml" if words[0] == "study" else "m.toml"
+            yield [*words[:named], file, *words[named:]]
 
 
 def _filled(command: str, known: dict[str, list[str]]) -> Iterator[str]:
@@ -181,11 +183,9 @@ class _Watch:
             self.shown += process_time() - begin
 
     def patches(self) -> Iterator[Any]:
-        commands = program.list_commands(click.Context(program))
-        for name in (*commands, "picture"):
-            module = import_module(
-                f"linkwork.core.commands.{'import_' if name == 'import' else name}"
-            )
+        core = [f"linkwork.core.commands.{name}" for name in ("check", "files", "solve", "sweep")]
+        others = [f"{wing.module}.commands" for wing in WINGS[1:] if wing.commands]
+        for module in map(import_module, [*core, *others]):
             for bar in ("progress", "study_progress"):
                 if hasattr(module, bar):
                     yield patch.object(module, bar, self.progress)
@@ -203,6 +203,8 @@ def _try(witness: Witness, watch: _Watch, typed: list[str], of: str) -> None:
     if ended.exit_code not in (0, 1, 2) or not isinstance(ended.exception, SystemExit | None):
         witness.counts["internal errors"] += 1
         witness.false.append(f"{what}: {ended.output[-300:]!r} {ended.exception!r}")
+    elif "No such command" in ended.output:
+        witness.false.append(f"{what}: no such command")
     elif ended.exit_code:
         witness.judge_message(what, ended.output)
 

@@ -256,6 +256,13 @@ def test_commands_are_listed_by_wing_without_loading_any(run: Run) -> None:
     assert "Forces and motion in time:\n  forces    Compute" in text
 
 
+def test_the_list_of_commands_says_what_each_command_says() -> None:
+    for wing in wings.WINGS:
+        for name, sentence in wing.commands.items():
+            first = wings.command(name).help.partition("\n\n")[0]
+            assert " ".join(first.split()) == sentence
+
+
 def test_solve_prints_values_derivatives_points_and_evidence(run: Run) -> None:
     done = run("solve", "slider-crank.toml", "--at", "90")
     assert done.stdout.startswith(SOLVED)

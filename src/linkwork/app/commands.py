@@ -124,10 +124,10 @@ def _told(name: str, address: str) -> list[str]:
 @json_option
 @debug_option
 def view_command(file: str | None, port: int, no_browser: bool, as_json: bool) -> None:
-    """Draw, show and edit a mechanism, or design one for a task, in a browser
-    until Ctrl-C.
+    """Open the app: draw, edit and show a mechanism in a browser.
 
-    Without FILE the page begins with the library, a blank sheet and tasks.
+    It runs until Ctrl-C, and also designs mechanisms for tasks. Without FILE
+    the page begins with the library, a blank sheet and tasks.
 
     \b
       linkwork view
@@ -180,7 +180,7 @@ def view_command(file: str | None, port: int, no_browser: bool, as_json: bool) -
 @json_option
 @debug_option
 def web_command(out: str, single: bool, pyodide: Path | None, as_json: bool) -> None:
-    """Write the live page as static files: it solves in the browser alone.
+    """Write the app as static files: it solves in the browser alone.
 
     OUT is a folder for any web host, or one HTML file that opens from a disk,
     by mail, or in a frame. Nothing leaves the visitor's machine.

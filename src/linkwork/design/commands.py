@@ -256,7 +256,7 @@ def tolerance_command(
     changes: tuple[str, ...],
     as_json: bool,
 ) -> None:
-    """Compute what deviations and clearances do to a quantity.
+    """Compute how tolerances and clearances affect a quantity.
 
     Deviations stand in [tolerances] of the file, clearances of pins in
     [clearances]. Worst case, root sum square and shares are of first order.

@@ -318,9 +318,9 @@ def study_progress(quiet: bool) -> Iterator[Callable[[studies.Progress], None]]:
 @json_option
 @debug_option
 def compile_command(as_json: bool) -> None:
-    """Compile the code that solves families and long tables, once after an installation.
+    """Compile the code of families and long tables, once.
 
-    Without this command, the first family of designs waits for it.
+    Without this command, the first family after an installation waits for it.
 
     \b
       linkwork compile

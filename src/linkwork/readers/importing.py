@@ -3,15 +3,20 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
+from typing import Any
 
 from linkwork.core import textfile
 from linkwork.core.api.mechanism import Mechanism
-from linkwork.core.foundation.errors import InputError, MechanismError, internal
-from linkwork.core.foundation.files import as_path
+from linkwork.core.foundation.errors import (
+    InputError,
+    MechanismError,
+    internal,
+)
+from linkwork.core.foundation.files import as_path, save_text
 from linkwork.core.foundation.values import as_told
 from linkwork.core.mechanism.linkage import Linkage
 from linkwork.readers.assembly import LARGEST, Exported, LeftOut
@@ -202,3 +207,23 @@ def exported(
     start = mechanism.solve(at, configuration=configuration, throw=True)
     places = {name: complex(*start.points[name]) for name in linkage.points}
     return write_foreign(linkage, places, format)
+
+
+def _text_of(format: str) -> Callable[..., Any]:
+    """The function that writes a mechanism as a text of another program."""
+
+    def write_text(
+        mechanism: Mechanism,
+        path: str | Path,
+        at: float | Mapping[str, float] | None = None,
+        *,
+        configuration: str | None = None,
+    ) -> Any:
+        made = exported(mechanism, format, at, configuration=configuration)
+        save_text(made.text, path)
+        return made.left_out
+
+    return write_text
+
+
+write_pmks, write_pylinkage, write_pyslvs = map(_text_of, ("pmks", "pylinkage", "pyslvs"))

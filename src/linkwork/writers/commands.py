@@ -257,16 +257,17 @@ def report_command(
     as_json: bool,
     **head: str | None,
 ) -> None:
-    """Write a report of the mechanism, for a design file or as homework.
+    """Write a report of the mechanism.
 
-    Equations, drawings, tables, plots, circuits, forces, what is proved, and
-    the file itself. Sections without content are named with the reason.
-    Markdown has its pictures in the folder NAME-pictures next to it.
+    For a design file or as homework: equations, drawings, tables, plots,
+    circuits, forces, what is proved, and the file itself. Sections without
+    content are named with the reason. Markdown has its pictures in the folder
+    NAME-pictures next to it.
 
     \b
-      linkwork export report rapier.toml -o rapier.html
-      linkwork export report rapier.toml -o rapier.pdf --template student --at 60
-      linkwork export report press.toml -o press.docx --author "A. Student"
+      linkwork export rapier.toml -o rapier.html
+      linkwork export rapier.toml -o rapier.pdf --template student --at 60
+      linkwork export press.toml -o press.docx --author "A. Student"
     """
     check_report_file(Path(output))
     check_outputs(file, output)
@@ -571,7 +572,7 @@ class _Export(click.Group):
 @click.group("export", cls=_Export, subcommand_metavar="[KIND] FILE -o PATH")
 @debug_option
 def export_command() -> None:
-    """Write the mechanism for another program, a workshop, a robot or a reader.
+    """Write a workbook, program, report, plates, robot or text.
 
     The suffix of the file chooses the kind, which can also be named;
     "linkwork export KIND --help" lists its options.
@@ -580,5 +581,5 @@ def export_command() -> None:
       linkwork export rapier.toml -o rapier.xlsx
       linkwork export rapier.toml -o rapier.c
       linkwork export rapier.toml -o plates.dxf
-      linkwork export report rapier.toml -o rapier.pdf
+      linkwork export rapier.toml -o rapier.pdf
     """

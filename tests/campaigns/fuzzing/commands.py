@@ -21,10 +21,10 @@ __all__ = ["command"]
 _COMMANDS = (
     "check", "equations", "solve", "solve", "quantities", "sweep", "sweep", "configurations",
     "circuits", "draw", "plot", "animate", "study", "examples", "schema", "nothing", "forces",
-    "forces", "new", "link", "web", "robot", "code", "simulate", "sensitivity", "tolerance",
+    "forces", "new", "link", "web", "export", "export", "simulate", "sensitivity", "tolerance",
     "design", "synthesize",
 )  # fmt: skip
-_WRITERS = ("draw", "animate", "plot", "study", "robot", "code", "synthesize")
+_WRITERS = ("draw", "animate", "plot", "study", "export", "synthesize")
 _SOURCES = (
     "four-bar", "four-bar", "slider-crank", "newton-another-root", "rapier-drive", "crank-shaper",
     "scotch-yoke", "belt-drive", "crank-press", "balanced-lamp", "nowhere.toml", "", ".", "-",

@@ -12,7 +12,6 @@ from linkwork.core.expression.derivatives import Jet
 from linkwork.core.results.quantities.definition import UNKNOWN, MechanismNames, RowQuantity, Solved
 from linkwork.core.results.quantity import Kind
 from linkwork.core.results.tables import csv_text
-from linkwork.writers import Writer
 
 
 def _moving(names: MechanismNames) -> Mapping[str, Kind]:
@@ -40,6 +39,3 @@ def write_speeds(mechanism: Mechanism, path: str | Path) -> None:
     motion = mechanism.sweep()
     points = [point for point in motion.points if point not in motion.skeleton.fixed]
     Path(path).write_text(csv_text(motion.table(*(f"{point}.speed" for point in points))))
-
-
-SPEEDS = Writer(write=write_speeds)

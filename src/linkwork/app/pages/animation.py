@@ -350,41 +350,7 @@ def animate(
     options: FilmOptions | None = None,
     progress: Callable[[float], None] | None = None,
 ) -> None:
-    """Write the motion as an animated page or a film.
-
-    A page (.html) works offline in any browser, without Linkwork: it plays the motion, follows
-    the dragged crank, and shows plots and certified numbers. Films are .gif, .apng, .webp (with
-    Pillow) and .mp4 (with ffmpeg).
-
-    Parameters
-    ----------
-    path : str or Path
-        The file; its suffix selects the format.
-    motion : Motion, optional
-        A sweep of this mechanism; by default :meth:`cycle`.
-    all_circuits : bool
-        Whether a page contains all circuits.
-    forces : sequence of Force
-        Forces that a page draws as arrows at their points.
-    sliders : sequence of str
-        Numbers of the mechanism, by the names that :meth:`~linkwork.Mechanism.family` takes, that
-        can be changed in a page: it contains the solver of this mechanism, and proves every
-        position that it draws. It shows :meth:`~linkwork.Mechanism.sweep`.
-    options : FilmOptions, optional
-        Frames per second, number of positions and size of a film.
-    progress : callable, optional
-        Called with the finished fraction, 0 to 1.
-
-    Raises
-    ------
-    InputError
-        If the suffix is unknown, there is nothing to draw, an option does not fit the
-        format, or a page cannot solve the mechanism with these sliders.
-    UnknownNameError
-        If a force is at a point that does not exist, or a slider's number does not exist.
-    MissingPackageError
-        If the package that writes the format is not installed.
-    """
+    """Write the motion as an animated page or a film; see :meth:`~linkwork.Mechanism.animate`."""
     kind = check_animation(path, options)
     if all_circuits and (motion is not None or kind != "html"):
         raise InputError("all circuits need the page of a mechanism: use the suffix .html")

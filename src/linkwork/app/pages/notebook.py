@@ -321,30 +321,7 @@ def widget(
     all_circuits: bool = False,
     forces: Sequence[Force] = (),
 ) -> Any:
-    """The motion as a notebook widget; needs the extra ``notebook``.
-
-    Parameters
-    ----------
-    motion : Motion, optional
-        A sweep of this mechanism; by default :meth:`cycle`.
-    all_circuits : bool
-        Whether the widget contains all circuits.
-    forces : sequence of Force
-        Forces drawn as arrows at their points.
-
-    Returns
-    -------
-    anywidget.AnyWidget
-        Its traits ``configuration`` and ``row`` select the displayed position and can be set;
-        see :func:`linkwork.app.motions_widget`.
-
-    Raises
-    ------
-    InputError
-        If there is nothing to draw, or both ``motion`` and ``all_circuits`` are given.
-    MissingPackageError
-        If anywidget is not installed.
-    """
+    """The motion as a notebook widget; see :meth:`~linkwork.Mechanism.widget`."""
     if all_circuits and motion is not None:
         raise InputError("a widget shows either the given motion or all circuits, not both")
     motions = shown_motions(mechanism, motion, all_circuits)

@@ -34,7 +34,7 @@ if TYPE_CHECKING:
 
 @internal("description", "read", "loop_equations", "place")
 class Mechanism:
-    """A planar mechanism: solve, sweep, check, draw, animate and export it.
+    """A planar mechanism: solve, sweep, check, draw, animate and write it.
 
     The functions :func:`load`, :func:`loads`, :func:`example`, :func:`linkage`, :func:`loops` and
     :func:`plain_equations` make mechanisms. A mechanism is immutable: every change returns a new
@@ -354,8 +354,7 @@ class Mechanism:
     def configurations(self, at: float | Mapping[str, float] | None = None) -> Configurations:
         """All assembly configurations at one input value, each with its certificate.
 
-        Blocks of one loop are solved in closed form, larger blocks by homotopy continuation; see
-        :func:`linkwork.circuits.configurations`.
+        Blocks of one loop are solved in closed form, larger blocks by homotopy continuation.
 
         Parameters
         ----------
@@ -385,7 +384,7 @@ class Mechanism:
     def circuits(
         self, *, certify: bool = True, progress: Callable[[float], None] | None = None
     ) -> Circuits:
-        """All circuits with their branches; see :func:`linkwork.circuits.circuits`.
+        """All circuits with their branches.
 
         Parameters
         ----------
@@ -862,8 +861,8 @@ class Mechanism:
         path : str or Path
             The file; its suffix selects the kind: ``.xlsx`` a workbook whose formulas solve the
             cycle again, ``.py``, ``.m``, ``.c``, ``.js``, ``.st`` a program, ``.dxf``, ``.stl``,
-            ``.3mf``, ``.step`` plates, ``.mjcf``, ``.sdf``, ``.urdf`` a robot, ``.docx``, ``.md``
-            a report.
+            ``.3mf``, ``.step`` plates, ``.mjcf``, ``.sdf``, ``.urdf`` a robot, ``.html``,
+            ``.pdf``, ``.docx``, ``.md`` a report.
         kind : str, optional
             Instead: ``workbook``, ``program``, ``plates``, ``robot``, ``report``, ``pmks``,
             ``pylinkage``, ``pyslvs``.

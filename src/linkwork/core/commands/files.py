@@ -43,7 +43,7 @@ def _tasks() -> tuple[str, ...]:
 @json_option
 @debug_option
 def examples_command(name: str | None, output: str | None, force: bool, as_json: bool) -> None:
-    """List the mechanisms of the library and tasks to begin with, or copy one.
+    """List the mechanisms of the library and tasks, or copy one.
 
     \b
       linkwork examples

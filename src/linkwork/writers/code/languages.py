@@ -7,7 +7,9 @@ from collections.abc import Iterator, Mapping
 from importlib import metadata
 from pathlib import Path
 
+from linkwork.core.api.mechanism import Mechanism
 from linkwork.core.foundation.errors import InputError
+from linkwork.core.foundation.files import as_path, save_text
 from linkwork.core.motion.model import Model
 from linkwork.core.results.motion import Motion
 from linkwork.writers.code.program_text import ProgramText, Syntax
@@ -512,3 +514,35 @@ def _heading(program: SolverProgram) -> Iterator[str]:
     yield "this program computes them again, and any others near them, but proves nothing."
     for limit in motion.limits:
         yield f"{limit.kind.word.capitalize()} at {limit.input:.12g}."
+
+
+def write_program(mechanism: Mechanism, path: str | Path, motion: Motion | None = None) -> None:
+    """Write the solver as a program in another language, which needs no Linkwork.
+
+    Parameters
+    ----------
+    path : str or Path
+        The file; its suffix selects the language: ``.py`` (NumPy), ``.m`` (Octave, MATLAB),
+        ``.c`` (C99), ``.js``, ``.st`` (structured text of IEC 61131-3).
+    motion : Motion, optional
+        A sweep of this mechanism, whose table the program computes again; by default
+        :meth:`~linkwork.Mechanism.sweep`.
+
+    Raises
+    ------
+    InputError
+        If there is no such language, no formulas of the mechanism's equations, or the file
+        cannot be written.
+
+    Examples
+    --------
+    >>> import linkwork as lw, pathlib, tempfile
+    >>> with tempfile.TemporaryDirectory() as folder:
+    ...     lw.example("four-bar").write(f"{folder}/four_bar.py")
+    ...     lines = pathlib.Path(folder, "four_bar.py").read_text().splitlines()
+    >>> lines[1]
+    'Four-bar linkage, open.'
+    """
+    cycle = mechanism.sweep() if motion is None else motion
+    text = code_of(mechanism.model, cycle, as_path(path))
+    save_text(text, path)

@@ -9,7 +9,7 @@ import re
 import struct
 import tempfile
 import zipfile
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -17,12 +17,16 @@ from xml.sax.saxutils import escape, quoteattr
 
 import numpy as np
 
+from linkwork.core.api.mechanism import Mechanism
 from linkwork.core.drawing.scene import LIGHT
 from linkwork.core.foundation.arrays import Array, IndexArray
 from linkwork.core.foundation.errors import InputError
-from linkwork.core.foundation.files import suffix_of
+from linkwork.core.foundation.files import as_path, save_bytes, suffix_of
+from linkwork.core.foundation.values import check_flags, given_or
+from linkwork.core.results.motion import Motion
 from linkwork.writers.plates.outlines import Outline, build123d, ezdxf, shapely
-from linkwork.writers.plates.plate import Plate, PlateStack
+from linkwork.writers.plates.plate import Plate, PlateOptions, PlateStack
+from linkwork.writers.plates.stack import stack_of
 
 _NEAR, _ROOM = 0.25, 0.6  # of the letters' height; of the radius of the room for them
 _SQUARE = 1.3  # of a sheet's width to the side of a square of the boxes' area
@@ -488,3 +492,58 @@ def plates_of(stack: PlateStack, file: Path, *, layout: bool = False) -> bytes:
     if suffix == ".3mf":
         return three_mf_of(named)
     return stl_of(meshes) if layout else separate_stl_of(named)
+
+
+def write_plates(
+    mechanism: Mechanism,
+    path: str | Path,
+    motion: Motion | None = None,
+    *,
+    options: PlateOptions | None = None,
+    layout: bool = False,
+    progress: Callable[[float], None] | None = None,
+) -> PlateStack:
+    """Write the links as plates to cut or print, in layers in which nothing collides.
+
+    Parameters
+    ----------
+    path : str or Path
+        The file; its suffix selects the format: ``.dxf``, ``.svg``, ``.stl``, ``.3mf`` or
+        ``.step``.
+    motion : Motion, optional
+        The sweep in which nothing may collide; by default :meth:`~linkwork.Mechanism.sweep`.
+    options : PlateOptions, optional
+        Widths, pins, clearance, kerf and thickness.
+    layout : bool
+        Put the plates side by side on a sheet; otherwise they are assembled.
+    progress : callable, optional
+        Called with the finished fraction, 0 to 1.
+
+    Returns
+    -------
+    PlateStack
+        The layers, the bill of materials, and what is proved of collisions.
+
+    Raises
+    ------
+    InputError
+        If a part cannot be made of plates, there is no order of layers, or the file cannot be
+        written.
+    MissingPackageError
+        If the package that writes the format is not installed.
+
+    Examples
+    --------
+    >>> import linkwork as lw, tempfile
+    >>> with tempfile.TemporaryDirectory() as folder:
+    ...     stack = lw.example("slider-crank").write(f"{folder}/plates.dxf", layout=True)
+    >>> stack.layers, stack.proved
+    (3, True)
+    """
+    file, chosen = as_path(path), given_or(PlateOptions(), "options", options)
+    check_flags(progress, layout=layout)
+    check_plate_file(file)
+    cycle = mechanism.sweep() if motion is None else motion
+    stack = stack_of(mechanism.model, cycle, chosen, progress)
+    save_bytes(plates_of(stack, file, layout=layout), path)
+    return stack

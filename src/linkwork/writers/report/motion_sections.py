@@ -356,7 +356,7 @@ def forces(found: Findings, template: Template) -> Iterator[Block]:
 
 
 def tolerances(found: Findings, template: Template) -> Iterator[Block]:
-    """What deviations and clearances do to every quantity asked for."""
+    """How tolerances and clearances affect every requested quantity."""
     yield Paragraph(
         text="Worst case, root sum square and shares are of first order in the deviations and "
         "clearances of the file."

@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping
 from importlib import metadata
 from pathlib import Path
 from xml.etree import ElementTree as Tree
 
+from linkwork.core.api.mechanism import Mechanism
 from linkwork.core.foundation.errors import InputError
-from linkwork.core.foundation.files import suffix_of
+from linkwork.core.foundation.files import as_path, save_text, suffix_of
 from linkwork.core.foundation.names import GROUND
 from linkwork.core.mechanism.part.part import Pair, PairKind
 from linkwork.core.motion.model import Model
@@ -373,3 +375,50 @@ def robot_of(model: Model, start: Position, motion: Motion | None, file: Path) -
             f'link "{WORLD}" has the name of the ground in MJCF and SDF: rename it, or write URDF'
         )
     return mjcf_of(robot) if suffix == ".mjcf" else sdf_of(robot)
+
+
+def write_robot(
+    mechanism: Mechanism,
+    path: str | Path,
+    at: float | Mapping[str, float] | None = None,
+    *,
+    configuration: str | None = None,
+    motion: Motion | None = None,
+) -> None:
+    """Write the mechanism for a simulator of robots.
+
+    Parameters
+    ----------
+    path : str or Path
+        The file; its suffix selects the format: ``.mjcf`` (MuJoCo, with the real loops),
+        ``.sdf`` (with all joints), ``.urdf`` (a tree whose joints follow the driven one).
+    at : float or mapping, optional
+        The input of the start position, at which all joint values are zero; by default that of
+        :meth:`~linkwork.Mechanism.solve`.
+    configuration : str, optional
+        The configuration of the start position.
+    motion : Motion, optional
+        Of URDF, the sweep through the start position that gives limits and polynomials; by
+        default :meth:`~linkwork.Mechanism.sweep`.
+
+    Raises
+    ------
+    InputError
+        If there is no such format, no start position, no equivalent of a part, or the file
+        cannot be written.
+
+    Examples
+    --------
+    >>> import linkwork as lw, pathlib, tempfile
+    >>> with tempfile.TemporaryDirectory() as folder:
+    ...     lw.example("four-bar").write(f"{folder}/bar.mjcf", at=60)
+    ...     text = pathlib.Path(folder, "bar.mjcf").read_text("utf-8")
+    >>> text.count("<joint "), text.count("<connect ")
+    (3, 1)
+    """
+    suffix = check_robot_file(as_path(path))
+    start = mechanism.solve(at, configuration=configuration)
+    if suffix == ".urdf" and motion is None:
+        motion = mechanism.sweep(configuration=configuration)
+    text = robot_of(mechanism.model, start, motion, as_path(path))
+    save_text(text, path)

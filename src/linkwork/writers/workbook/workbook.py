@@ -6,9 +6,12 @@ import io
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from importlib import metadata
+from pathlib import Path
 from typing import Any
 
+from linkwork.core.api.mechanism import Mechanism
 from linkwork.core.foundation.errors import InputError
+from linkwork.core.foundation.files import as_path, save_bytes
 from linkwork.core.foundation.loading import installed_with
 from linkwork.core.motion.higher_rates import check_own_motion
 from linkwork.core.motion.model import Model
@@ -188,3 +191,43 @@ def _check(model: Model, motion: Motion) -> None:
             f"{rows} rows are too many for a workbook with formulas (at most {_MOST_ROWS}): "
             "take a larger step, or write CSV"
         )
+
+
+def write_workbook(
+    mechanism: Mechanism, path: str | Path, motion: Motion | None = None
+) -> tuple[str, ...]:
+    """Write a sweep as an Excel workbook whose formulas solve the cycle again.
+
+    Parameters
+    ----------
+    path : str or Path
+        The .xlsx file.
+    motion : Motion, optional
+        A sweep of this mechanism; by default :meth:`~linkwork.Mechanism.sweep`.
+
+    Returns
+    -------
+    tuple of str
+        The parts of the workbook that contain values only and do not recalculate.
+
+    Raises
+    ------
+    InputError
+        If the suffix is not .xlsx, the motion belongs to another mechanism, or the file cannot
+        be written.
+    MissingPackageError
+        If XlsxWriter is not installed.
+
+    Examples
+    --------
+    >>> import linkwork as lw, tempfile
+    >>> with tempfile.TemporaryDirectory() as folder:
+    ...     lw.example("four-bar").write(f"{folder}/bar.xlsx")
+    ()
+    """
+    if as_path(path).suffix.lower() != ".xlsx":
+        raise InputError(f'cannot write "{path}": a workbook needs the suffix .xlsx')
+    cycle = mechanism.sweep() if motion is None else motion
+    written = workbook_of(mechanism.model, cycle)
+    save_bytes(written.content, path)
+    return written.notices

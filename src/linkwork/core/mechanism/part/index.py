@@ -65,7 +65,10 @@ PARTS: Mapping[str, type[Part]] = {field.name: _KINDS[field.name] for field in f
 
 
 def open_room(kind: type, room: str) -> None:
-    """Import what registers the functions of a kind of parts in a room, such as its equations."""
+    """Import what registers the functions of a kind of parts in a room, such as its equations.
+
+    A kind of the core that only a wing draws names it in ``wing``.
+    """
     package = getattr(kind, "wing", kind.__module__.rpartition(".")[0])
     if not package.startswith("linkwork.core"):
         import_module(f"{package}.{room}")

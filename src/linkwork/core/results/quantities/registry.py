@@ -57,8 +57,13 @@ def row_quantities() -> tuple[RowQuantity, ...]:
 
 def row_quantity(name: str) -> RowQuantity | None:
     """The quantity that a name ends with: that of ``B.transmission``."""
-    known = row_quantities() if "." in name else ()
-    return next((row for row in known if name.endswith(f".{row.word}")), None)
+    if "." not in name:
+        return None
+    # other packages are looked through last, which takes time
+    found = (row for row in ROW_QUANTITIES if name.endswith(f".{row.word}"))
+    return next(found, None) or next(
+        (row for row in row_quantities() if name.endswith(f".{row.word}")), None
+    )
 
 
 # ----------------------------------------------------------------------
