@@ -50,7 +50,7 @@ def circuit_fields(found: Circuits, circuit: Circuit) -> Iterator[tuple[str, str
     redundant = circuit.motion.redundant
     if redundant and circuit.certified:
         proof += f" without {listed_links(redundant)}"
-    yield ("closed" if circuit.closed else "not closed"), f"{circuit.end.story}; {proof}"
+    yield ("closed" if circuit.closed else "not closed"), f"{circuit.end.explanation}; {proof}"
     if circuit.closed:
         yield from _turning(circuit)
     resting = [
@@ -59,7 +59,7 @@ def circuit_fields(found: Circuits, circuit: Circuit) -> Iterator[tuple[str, str
         if branch.end is CircuitEnd.INPUT_CONSTANT
     ]
     if resting:
-        yield "input at rest", f"along {', '.join(resting)} {CircuitEnd.INPUT_CONSTANT.story}"
+        yield "input at rest", f"along {', '.join(resting)} {CircuitEnd.INPUT_CONSTANT.explanation}"
     for limit in (*circuit.dead_points, *circuit.change_points):
         yield limit.kind.word, limit.told(found.input, found.input_unit)
     yield from redundant_lines(redundant)

@@ -110,7 +110,7 @@ def reply(request: Question, about: About) -> Events:
 
 
 @reply.register
-def _ANSWERS_(request: ListCircuits, about: About) -> Events:
+def _(request: ListCircuits, about: About) -> Events:
     try:
         circuits = about.subject.mechanism.circuits(progress=about.progress)
     except GivenUpError:
@@ -210,7 +210,7 @@ def answered(query: Query, mechanism: Mechanism) -> list[Event]:
 
 
 @answered.register
-def _QUERIES_(query: SolveAt, mechanism: Mechanism) -> list[Event]:
+def _(query: SolveAt, mechanism: Mechanism) -> list[Event]:
     at = query.at or None
     position = mechanism.solve(at, configuration=query.configuration)
     events: list[Event] = [position_found(position)]

@@ -39,7 +39,7 @@ from linkwork.app.live.file_state import (
 from linkwork.app.live.force_entries import entries_shown, masses_shown
 from linkwork.app.live.history import History
 from linkwork.app.live.part_entries import parts_shown
-from linkwork.app.live.subject import Subject, lacks_of
+from linkwork.app.live.subject import Subject, missing_items
 from linkwork.app.pages.animation import FilmOptions, animation, check_animation
 from linkwork.app.pages.moving_scene import moving_scene
 from linkwork.app.pages.offline_page import offline_page
@@ -499,7 +499,7 @@ def file_state(
         traced=description.trace,
         outputs=tuple(description.outputs),
         equations=() if sheet is None else _loop_texts(sheet),
-        lacks=lacks_of(subject),
+        lacks=missing_items(subject),
         readable=subject.readable,
     )
 
@@ -527,7 +527,7 @@ def _circuit(circuit: Circuit, circuits: Circuits, here: set[str]) -> CircuitFou
     return CircuitFound(
         name=circuit.name,
         current=not here.isdisjoint(names),
-        end=circuit.end.story,
+        end=circuit.end.explanation,
         certified=circuit.certified,
         input_range=circuit.input_range,
         turns=circuit.turns,

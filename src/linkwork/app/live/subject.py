@@ -143,7 +143,7 @@ _MOST = 12  # lacks that are listed
 _MOST_DRIVES = 4  # links offered as inputs
 
 
-def lacks_of(subject: Subject) -> tuple[Lack, ...]:
+def missing_items(subject: Subject) -> tuple[Lack, ...]:
     """What keeps a text from being a mechanism, in the order in which it is best mended."""
     if subject.draft is None:
         return ()

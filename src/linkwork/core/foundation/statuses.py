@@ -179,7 +179,7 @@ class CircuitEnd(Enum):
     Examples
     --------
     >>> import linkwork as lw
-    >>> lw.example("four-bar").circuits()[0].end.story
+    >>> lw.example("four-bar").circuits()[0].end.explanation
     'the motion returns to its start'
     """
 
@@ -191,7 +191,7 @@ class CircuitEnd(Enum):
     SINGULAR = "stopped: the curve was followed to a singular position of unknown kind"
 
     @property
-    def story(self) -> str:
+    def explanation(self) -> str:
         """The sentence without the keyword."""
         return self.value.partition(": ")[2]
 

@@ -296,9 +296,9 @@ def _determined(
     found = dyads_with_pivots(pivots, points, angles, reach)
     if len(found) == len(pivots):
         return found
-    lonely = [k for k, p in enumerate(pivots) if not (np.abs(found.fixed - p) < reach).any()]
+    unmatched = [k for k, p in enumerate(pivots) if not (np.abs(found.fixed - p) < reach).any()]
     told = "determines no dyad: the body turns about it from one pose to another"
-    raise _refused(task, "given", told, key, lonely[0] if lonely else 0)
+    raise _refused(task, "given", told, key, unmatched[0] if unmatched else 0)
 
 
 def _moved(
