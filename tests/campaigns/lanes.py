@@ -9,12 +9,12 @@ import numpy as np
 import numpy.typing as npt
 
 from linkwork.core.numerics.kantorovich import Bounds, Radii
+from linkwork.core.record.block_proof import BlockProof, BlockRadii
+from linkwork.core.record.closure import BlockPart, Closure
 from linkwork.core.record.recorder import LANES, Recorder, Value
 from linkwork.core.table.loop_table import LoopTable
 from linkwork.families.compiled.interpreter import run
-from linkwork.families.march.closure import BlockPart, Closure
 from linkwork.families.march.march_programs import MarchPrograms, march_programs
-from linkwork.families.march.proof_program import BlockProof, BlockRadii
 from tests.campaigns.certificates import Case, Verdict, judge_case
 from tests.campaigns.positions import Placed, closed, random_position
 from tests.kernels.running import ran

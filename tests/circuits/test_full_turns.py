@@ -1,4 +1,4 @@
-"""Lists of circuits by compiled code: what plain numbers find."""
+"""Circuits along which the input turns fully: what traced curves give."""
 
 from __future__ import annotations
 
@@ -11,7 +11,6 @@ import linkwork as lw
 from linkwork.circuits import arcs as module, arcs as walks
 from linkwork.circuits.branches import TracedCurve
 from linkwork.core.numerics.system import SolvedRows
-from linkwork.families import by_kernels
 from tests.circuits.test_circuits import four_bar
 from tests.library_mechanisms import read_example
 from tests.oracles.four_bar import FourBar
@@ -23,7 +22,7 @@ NEAR = 1e-12
 
 @pytest.fixture
 def turned(monkeypatch: pytest.MonkeyPatch) -> list[TracedCurve | None]:
-    """What compiled code was asked for, and found; it serves wherever it can."""
+    """The whole turns that were looked for."""
     own, found = module.full_turn, []
 
     def seen(*arguments: Any) -> TracedCurve | None:
@@ -31,7 +30,6 @@ def turned(monkeypatch: pytest.MonkeyPatch) -> list[TracedCurve | None]:
         return found[-1]
 
     monkeypatch.setattr(walks, "full_turn", seen)
-    monkeypatch.setattr(by_kernels, "kernels_pay", lambda model, rows: by_kernels.are_served(model))
     return found
 
 
@@ -68,24 +66,25 @@ def assert_same(one: lw.circuits.Circuits, other: lw.circuits.Circuits) -> None:
 @pytest.mark.parametrize(
     "name", FEW + [pytest.param(name, marks=pytest.mark.extended) for name in MORE]
 )
-def test_circuits_by_compiled_code_are_those_of_plain_numbers(
+def test_circuits_by_whole_turns_are_those_of_traced_curves(
     name: str, turned: list[TracedCurve | None], monkeypatch: pytest.MonkeyPatch
 ) -> None:
     mechanism = read_example(name)
     with monkeypatch.context() as without:
-        without.setattr(by_kernels, "kernels_pay", lambda model, rows: False)
+        without.setattr(walks, "full_turn", lambda drive, start: None)
         plain = mechanism.circuits()
-    assert not any(turned)
+    assert not turned
     found = mechanism.circuits()
+    assert turned
     assert_same(plain, found)
-    # the positions shown do not depend on what has been loaded
+    # the positions shown do not depend on the way
     for one, other in zip(plain, found, strict=True):
         assert one.motion.branch == other.motion.branch
         for column in one.motion.unknowns:
             np.testing.assert_array_equal(one.motion[column], other.motion[column])
 
 
-def test_a_crank_that_turns_is_proved_by_compiled_code_and_a_rocker_is_not(
+def test_a_crank_that_turns_is_proved_at_once_and_a_rocker_is_not(
     turned: list[TracedCurve | None],
 ) -> None:
     found = read_example("four-bar").circuits()
@@ -102,7 +101,7 @@ def test_a_crank_that_turns_is_proved_by_compiled_code_and_a_rocker_is_not(
 def test_a_curve_is_closed_only_if_its_last_position_is_proved_to_be_the_first(
     turned: list[TracedCurve | None], monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    own = by_kernels.kernel_rows
+    own = module._proved_rows
 
     def elsewhere(*arguments: Any) -> SolvedRows | None:
         rows = own(*arguments)
@@ -111,7 +110,7 @@ def test_a_curve_is_closed_only_if_its_last_position_is_proved_to_be_the_first(
         v[-1, 0] += rows.uniqueness_radius[0]
         return rows.with_columns(v=v)
 
-    monkeypatch.setattr(by_kernels, "kernel_rows", elsewhere)
+    monkeypatch.setattr(module, "_proved_rows", elsewhere)
     found = read_example("four-bar").circuits()
     assert turned == [None, None]
     assert all(circuit.certified and circuit.closed for circuit in found)

@@ -9,9 +9,9 @@ import numpy.typing as npt
 import pytest
 
 from linkwork.core.foundation.arrays import BoolArray
+from linkwork.core.record.closure import BlockPart, Closure, solve_linear
 from linkwork.core.record.recorder import Recorder, Value
 from linkwork.core.table.loop_table import LoopTable
-from linkwork.families.march.closure import BlockPart, Closure, solve_linear
 from tests.campaigns.positions import random_position
 from tests.kernels.random_tables import random_example
 from tests.kernels.running import ran

@@ -4,9 +4,12 @@ from __future__ import annotations
 
 import ctypes
 import os
+import shutil
+import subprocess
 import sys
 from collections.abc import Iterator
 from concurrent.futures import ThreadPoolExecutor
+from importlib import import_module
 from pathlib import Path
 from typing import Any
 
@@ -17,14 +20,20 @@ import linkwork as lw
 from linkwork.core.foundation.arrays import Array, allocate_aligned
 from linkwork.core.record.printing import trial_source
 from linkwork.core.record.recorder import LANES, SOURCES, Op
-from linkwork.families.by_kernels import block_parts
-from linkwork.families.compiled import execution
-from linkwork.families.compiled.code_cache import is_cached, load_compiled
+from linkwork.families.compiled import code_cache as kernel_cache, execution
+from linkwork.families.compiled.code_cache import (
+    is_cached,
+    is_compiled,
+    load_compiled,
+    say_that_it_compiles,
+    sources_digest,
+)
 from linkwork.families.compiled.compiling import CodeFiles
 from linkwork.families.compiled.execution import Execution
 from linkwork.families.compiled.interpreter import run
 from linkwork.families.march import step_trial as step_control, sweep_kernel
 from linkwork.families.march.sweep_kernel import Steps, SweepKernel
+from linkwork.families.topologies import block_parts
 
 PLACES = 5
 _CODE_FILES: Any = CodeFiles  # whose methods have no types
@@ -43,7 +52,9 @@ def _own_cache(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[None
 def every_operation(rng: np.random.Generator, height: int) -> np.ndarray:
     """A program of every instruction with registers by chance, the targets in place 0."""
     code = []
-    for op in [op for op in Op if op not in (Op.COS, Op.INPUT, Op.CONSTANT, Op.ATAN2)] * 3:
+    for op in [
+        op for op in Op if op not in (Op.COS, Op.INPUT, Op.CONSTANT, Op.ATAN2, Op.CALL, Op.PART)
+    ] * 3:
         target, beside = rng.choice(height, 2, replace=False)
         sources = rng.integers(0, PLACES * height + 6, 3)
         if op is Op.SIN:
@@ -221,3 +232,61 @@ def test_code_of_former_sources_is_not_read_and_goes(tmp_path: Path) -> None:
     files("now").save("numbers", "code")
     assert files("now").load("numbers") == "code"
     assert len(list(tmp_path.glob("*.nbc"))) == 1
+
+
+@pytest.fixture
+def _nothing_said() -> None:
+    kernel_cache._warn_that_it_compiles.cache_clear()
+
+
+@pytest.mark.parametrize("loop", ["independent", "lockstep"])
+@pytest.mark.usefixtures("_nothing_said")
+def test_compiled_code_counts_if_it_is_that_of_all_sources(
+    loop: str,
+    tmp_path: Path,
+    monkeypatch: pytest.MonkeyPatch,
+    caplog: pytest.LogCaptureFixture,
+) -> None:
+    monkeypatch.setenv("NUMBA_CACHE_DIR", str(tmp_path))
+    left = tmp_path / "march_0a1b" / f"{loop}.{kernel_cache.LOOPS[loop]}-336.py311.nbi"
+    left.parent.mkdir()
+    left.write_bytes(b"an index with " + sources_digest() + b" in it")
+    assert is_compiled(loop)
+    say_that_it_compiles()
+    say_that_it_compiles(loop)
+    assert not caplog.records
+    left.write_bytes(b"an index of another version")
+    assert not is_compiled(loop)
+    say_that_it_compiles(loop)
+    say_that_it_compiles()  # once is enough
+    (told,) = caplog.records
+    assert "once after an installation" in told.getMessage()
+
+
+def test_every_source_that_is_compiled_has_a_part_in_the_digest(tmp_path: Path) -> None:
+    package = Path(lw.__file__).parent
+    changed = tmp_path / "linkwork"
+    shutil.copytree(package, changed, ignore=shutil.ignore_patterns("__pycache__", "*.npz"))
+    code = (
+        "import sys; from linkwork.families.compiled.code_cache import sources_digest as d; "
+        "print(d().hex())"
+    )
+
+    def digest() -> str:
+        environment = {**os.environ, "PYTHONPATH": str(tmp_path), "PYTHONDONTWRITEBYTECODE": "1"}
+        command = [sys.executable, "-c", code]
+        done = subprocess.run(command, capture_output=True, text=True, check=True, env=environment)
+        return done.stdout.strip()
+
+    assert digest() == sources_digest().hex()
+    for name in ("march/step_trial.py", "compiled/interpreter.py"):
+        with (changed / "families" / name).open("a", encoding="utf-8") as file:
+            file.write("# another version\n")
+        assert digest() != sources_digest().hex()
+        shutil.copy(package / "families" / name, changed / "families" / name)
+
+
+def test_numba_keeps_the_digest_by_which_compiled_code_is_known() -> None:
+    import_module("linkwork.families.march.independent")
+    indices = [index.read_bytes() for index in kernel_cache._indices("independent")]
+    assert any(sources_digest() in index for index in indices)

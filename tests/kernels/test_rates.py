@@ -8,7 +8,7 @@ import pytest
 
 import linkwork as lw
 from linkwork.core.motion.model import Model, leading_input
-from linkwork.families.march.closure import BlockPart
+from linkwork.core.record.closure import BlockPart
 from linkwork.families.march.rate_programs import at_places, evidence_program, rate_program
 
 Array = npt.NDArray[np.float64]

@@ -1,4 +1,4 @@
-"""Curves along which the input turns fully, followed and proved by the compiled march of sweeps."""
+"""Curves along which the input turns fully, followed and proved as sweeps are."""
 
 from __future__ import annotations
 
@@ -8,7 +8,6 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from linkwork import wings
 from linkwork.circuits.branches import (
     CurveBranch,
     TracedCurve,
@@ -21,9 +20,9 @@ from linkwork.core.foundation.arrays import Array
 from linkwork.core.foundation.rounding import CLOSER_TANGENT, EPSILON, REGULAR_CONDITION
 from linkwork.core.foundation.statuses import CircuitEnd, Status
 from linkwork.core.foundation.units import FULL_TURN
-from linkwork.core.motion.following import Drive
+from linkwork.core.motion.following import Drive, track_to
 from linkwork.core.motion.model import FITS, misfit
-from linkwork.core.numerics.branch_tracking import Node, node_at
+from linkwork.core.numerics.branch_tracking import BOLD, Node, node_at, rows_on_track
 from linkwork.core.numerics.change_point import Crossing
 from linkwork.core.numerics.curve_proof import ProvenCurve, prove_curve, prove_curves
 from linkwork.core.numerics.curve_tracing import Curve, Leg, tangents_apart
@@ -37,31 +36,29 @@ from linkwork.core.numerics.local_parametrization import (
     same_position,
     whole_turns,
 )
+from linkwork.core.numerics.path_proof import prove_path
+from linkwork.core.numerics.position_proof import rounding_of_inputs
 from linkwork.core.numerics.system import SolvedRows
 
 _STEPS = 24  # of a turn, besides those that the march takes in between
-_AS_LONG = 150  # rows of a sweep: as long does it take to follow and prove a turn in plain numbers
 
 
 def full_turn(drive: Drive, start: Array) -> TracedCurve | None:
     """The curve through a position (N,) that closes after one turn of the input, with its proof.
 
-    ``None`` where compiled code does not pay, and where the march does not prove the whole turn:
-    at dead points, near change points, and where the curve closes after several turns only.
+    ``None`` where the input does not make a whole turn, and where that is not proved: at dead
+    points, near change points, and where the curve closes after several turns only.
     """
     leads, p = drive.leads, drive.leads.parameter
     own = leads.with_parameter(p)
     if not leads.is_angle[p] or own is None or not own.provable:
-        return None
-    by_kernels = wings.use("families.by_kernels")
-    if not by_kernels.kernels_pay(drive.model, _AS_LONG):
         return None
     here = own.node(start)
     t = here.t + np.linspace(0.0, FULL_TURN, _STEPS + 1)
     # whole turns are no floats: proofs hold for the exact value, too
     slip = 4.0 * EPSILON * (abs(here.t) + FULL_TURN)
     anchor = node_at(drive.solver, drive.path, here.t, start)
-    rows = by_kernels.kernel_rows(drive, anchor, t, slip * np.abs(drive.path.rate))
+    rows = _proved_rows(drive, anchor, t, slip * np.abs(drive.path.rate))
     if rows is None or not _closes(drive, rows):
         return None
     leg = Leg(led=own, nodes=(here, *_nodes_behind(own, here, t, rows)))
@@ -74,6 +71,28 @@ def full_turn(drive: Drive, start: Array) -> TracedCurve | None:
             steps=_STEPS,
         ),
         turns=(),
+    )
+
+
+def _proved_rows(drive: Drive, anchor: Node, t: Array, spread: Array) -> SolvedRows | None:
+    """Rows at values of t from an anchor on, joined to it by proved steps; ``None`` if not all are.
+
+    ``spread`` (p,): how far inputs may be from their exact values, besides their rounding.
+    """
+    solver, path = drive.solver, drive.path
+    track = track_to(solver, path, anchor, [float(t[-1])], BOLD)
+    if track.ends:
+        return None
+    rows = rows_on_track(solver, path, track, t)
+    if (rows.status != Status.CONVERGED.code).any():
+        return None
+    apart = rounding_of_inputs(rows.v, solver.unknowns) + spread
+    proof = prove_path(solver, path, rows.with_columns(input_radius=apart), anchor=0)
+    if not proof.connected_to(0).all():
+        return None
+    position = proof.position
+    return rows.with_columns(
+        radius=position.radius, uniqueness_radius=position.least_uniqueness_radius
     )
 
 

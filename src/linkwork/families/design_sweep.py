@@ -32,12 +32,11 @@ from linkwork.core.numerics.system import SolvedRows
 from linkwork.core.results.limit import LimitKind
 from linkwork.core.results.motion import Motion
 from linkwork.families.building import Designs, stay_open
-from linkwork.families.by_kernels.choice import are_served
-from linkwork.families.by_kernels.rows import kernel_of
 from linkwork.families.compiled.execution import Execution
 from linkwork.families.march.dead_points import dead_points
 from linkwork.families.march.step_trial import MarchResult
 from linkwork.families.march.sweep_kernel import Steps, SweepKernel
+from linkwork.families.topologies import are_served, kernel_of
 
 
 def loop_coefficients(designs: Designs) -> dict[str, Array]:

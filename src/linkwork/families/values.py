@@ -25,11 +25,10 @@ from linkwork.core.mechanism.varied_numbers import with_numbers
 from linkwork.core.motion.following import Drive
 from linkwork.core.motion.model import Model, leading_input, leading_speeds
 from linkwork.core.motion.positions import QuantityValues
+from linkwork.core.record.closure import BlockPart
 from linkwork.core.record.recorder import Recorder, Value
 from linkwork.families.building import Designs
-from linkwork.families.by_kernels.rows import block_parts, lines_of_lengths
 from linkwork.families.design_sweep import DesignRows, loop_coefficients, zero_coefficients
-from linkwork.families.march.closure import BlockPart
 from linkwork.families.march.rate_programs import (
     PlaceProgram,
     at_places,
@@ -39,6 +38,7 @@ from linkwork.families.march.rate_programs import (
 )
 from linkwork.families.printed_solver import RecordedQuantities
 from linkwork.families.recorded_design import Part
+from linkwork.families.topologies import block_parts, lines_of_lengths
 from linkwork.forces.reactions.applied import AppliedLoads
 from linkwork.forces.reactions.drives import effort_name, work_terms
 from linkwork.forces.reactions.free_bodies import FreeBodies

@@ -11,11 +11,9 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import Any
 
 import numpy as np
 
-from linkwork import wings
 from linkwork.core.equations.model import FormulaRow, LawEquation, LoopEquations, Term
 from linkwork.core.expression.tree import names_in
 from linkwork.core.foundation.arrays import Array, BoolArray, ComplexArray, IndexArray
@@ -28,16 +26,13 @@ from linkwork.core.numerics.block_solver import Block, BlockSolver
 from linkwork.core.numerics.branch_tracking import InputPath
 from linkwork.core.numerics.decomposition import BlockForm, block_form
 from linkwork.core.numerics.local_parametrization import Parametrization
+from linkwork.core.record.block_record import record_of
 from linkwork.core.table.loop_table import LoopTable, TableSplitter
 from linkwork.core.table.rows import LawRow, LinearRows, PhasorRows
 
 _MOST_LOOPS = 6  # C(12, 6) = 924 paths for a random system
 _DEPENDENT = 1e-12  # smallest singular value of a closure matrix, relative to the largest
 _WHOLE = 1e-12  # tolerance of integer weights
-
-
-def _make_quick() -> Any:
-    return wings.use("families.single.quick_rows").quick_rows
 
 
 class NoDirectionForm(Exception):
@@ -394,13 +389,12 @@ class LeaderSolvers:
                     equations=members,
                     unknowns=np.array(unknowns, dtype=np.intp),
                     variables=np.array(variables, dtype=np.intp),
+                    record=record_of(part),
                 )
             )
         order: IndexArray = np.array([*others, lead], dtype=np.intp)
         scale = table.variable_scale[order]
-        return BlockSolver(
-            blocks, len(others), table.variables, scale, make_quick=_make_quick()
-        ), order
+        return BlockSolver(blocks, len(others), table.variables, scale), order
 
 
 # ----------------------------------------------------------------------
@@ -454,23 +448,13 @@ class ParametrizedTable:
     def jacobian(self, v: Array) -> Array:
         """The scaled Jacobian with respect to all variables but the path parameter, (B, m, m)."""
         table = self.table
-        one = table.single if len(v) == 1 else None
-        slope = (
-            table.jacobian(v)
-            if one is None
-            else np.array([one.residual_and_jacobian(v[0].tolist())[1]])
-        )
-        slope = slope * table.variable_scale / table.equation_scale[:, None]
+        slope = table.jacobian(v) * table.variable_scale / table.equation_scale[:, None]
         return np.delete(slope, self.parameter, axis=2)
 
     def _bend(self, v: Array, directions: Array) -> Array:
         """D²F[d, d] at a position v (N,) for directions (B, N), (B, m)."""
-        one = self.table.single
-        if one is None:
-            places = np.tile(v, (len(directions), 1))
-            return self.table.second_directional_derivative(places, directions)
-        here = v.tolist()
-        return np.array([one.second_directional_derivative(here, d) for d in directions.tolist()])
+        places = np.tile(v, (len(directions), 1))
+        return self.table.second_directional_derivative(places, directions)
 
     def weakening(self, v: Array, rates: Array) -> float:
         """The rate of the smallest singular value σ of the scaled Jacobian at a position v (N,).
@@ -653,9 +637,10 @@ def compile_equations(equations: LoopEquations, where: str) -> Compiled:
                 equations=members,
                 unknowns=np.array(unknowns, dtype=np.intp),
                 variables=np.array([*unknowns, *known], dtype=np.intp),
+                record=record_of(part),
             )
         )
-    solver = BlockSolver(blocks, n, table.variables, table.variable_scale, make_quick=_make_quick())
+    solver = BlockSolver(blocks, n, table.variables, table.variable_scale)
     return Compiled(
         equations=equations,
         table=table,

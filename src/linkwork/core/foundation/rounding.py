@@ -11,12 +11,14 @@ __all__ = [
     "EPSILON",
     "EQUAL_ROWS",
     "EXTENDED_EPSILON",
+    "FAR",
     "LARGEST_POLISH",
     "PRINTED_ANGLE",
     "PROOF_SLACK",
     "RANK_TOLERANCE",
     "REGULAR_CONDITION",
     "REST",
+    "SMALLEST_RATIO",
     "UNIT_ROUNDOFF",
 ]
 
@@ -34,6 +36,10 @@ PROOF_SLACK = 1.0 + 1e-12
 
 #: Smaller singular values, relative to the largest one of a scaled Jacobian, count as none.
 RANK_TOLERANCE = 1e-9
+#: Weighted: a correction beyond which Newton-Raphson has run away.
+FAR = 1e9
+#: Below that rounding, not the equations, decides the ratio of two corrections.
+SMALLEST_RATIO = 1e-9
 #: The condition number up to which a position has rates, and can begin a curve.
 REGULAR_CONDITION = 1e5
 #: Weighted: the furthest that a position moves when its input is made exact.

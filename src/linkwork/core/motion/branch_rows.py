@@ -12,14 +12,13 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from linkwork import wings
 from linkwork.core.foundation.arrays import Array, BoolArray, IndexArray
 from linkwork.core.foundation.rounding import EPSILON, LARGEST_POLISH
 from linkwork.core.foundation.statuses import Certification, ChangePointPolicy, Status
 from linkwork.core.foundation.units import FULL_TURN
 from linkwork.core.motion.following import Drive, track_to
 from linkwork.core.motion.limits import BranchEnd, end_at_change_point, ends_of
-from linkwork.core.motion.positions import inputs_apart, prove_rows, unproved
+from linkwork.core.motion.positions import prove_rows
 from linkwork.core.motion.whole_turns import Lap, lap_of
 from linkwork.core.numerics.branch_tracking import (
     BOLD,
@@ -216,8 +215,6 @@ def ends_passed(drive: Drive, end: BranchEnd, passage: Passage, certify: bool) -
 # The rows of a table that lie on one branch: followed, solved, proved.
 
 
-_APART = 1e-6  # of the mean distance of rows: rows nearer to each other are one place
-_COARSE = 1 / 8  # of a track's longest step: shorter ones are near its ends
 _CHUNK = 4096  # rows solved together: large enough to amortise NumPy calls, small enough for cache
 
 
@@ -225,19 +222,15 @@ _CHUNK = 4096  # rows solved together: large enough to amortise NumPy calls, sma
 class Asked:
     """Rows that are asked for: values ``t`` (B,) of the path, the inputs in internal units (B, p)
     and as they are named (B, p).
-
-    ``with_track``: whether the track along them is wanted, too.
     """
 
     t: Array
     inputs: Array
     in_file_units: Array
-    with_track: bool = False
 
     def take(self, where: IndexArray) -> Asked:
         """Some of them."""
-        return replace(
-            self,
+        return Asked(
             t=self.t[where],
             inputs=self.inputs[where],
             in_file_units=self.in_file_units[where],
@@ -248,24 +241,17 @@ class Asked:
 class BranchRows:
     """The rows asked for, those that lie on the branch filled; the branch's track and its ends.
 
-    ``followed``: the track, unless the kernels found all rows without one. ``placed`` (B,): where
-    on the track each row lies, or laps earlier, NaN if nowhere. ``lap``: if the motion repeats
-    itself and laps were left out; ``lap_proved``: whether a lap leads back.
+    ``placed`` (B,): where on the track each row lies, or laps earlier, NaN if nowhere. ``lap``: if
+    the motion repeats itself and laps were left out; ``lap_proved``: whether a lap leads back.
     """
 
     rows: SolvedRows
-    followed: Track | None
+    track: Track
     placed: Array
     ends: tuple[BranchEnd, ...]
     proved_to_ends: bool
     lap: Lap | None = None
     lap_proved: bool = False
-
-    @property
-    def track(self) -> Track:
-        """The track of rows that were asked for ``with_track``."""
-        assert self.followed is not None
-        return self.followed
 
     @property
     def here(self) -> BoolArray:
@@ -352,16 +338,7 @@ def _rows_followed(
     certify: bool,
     passage: Passage | None,
 ) -> BranchRows:
-    """The track is bold first; where that leaves rows unproved it is followed again with care.
-
-    Compiled kernels need no track where they find all rows.
-    """
-    quickly = wings.use("families.by_kernels").kernels_pay(drive.model, len(asked.t))
-    if quickly and passage is None and not asked.with_track:
-        found = _by_kernels(drive, anchor, asked, certify)
-        if found is not None:
-            report.proved(1.0)
-            return found
+    """The track is bold first; where that leaves rows unproved it is followed again with care."""
     # without proofs nothing would show that a bold track has left its branch
     tries = (BOLD, None) if certify and drive.solver.is_provable else (None,)
     for care in tries:
@@ -370,7 +347,7 @@ def _rows_followed(
         work = _RowSolver(
             drive=drive, track=track, placed=placed, asked=asked, report=report, certify=certify
         )
-        rows, to_ends = work.solve(quickly)
+        rows, to_ends = work.solve()
         if care is None or not _doubtful(rows, placed, to_ends):
             break
     ends = ends_of(drive, track, certify)
@@ -381,25 +358,7 @@ def _rows_followed(
     if passage is not None:
         rows = fill_passed_rows(drive, passage, asked.t, placed, rows)
     rows = _mark_missing(rows, track, asked.t, np.isnan(placed), ends)
-    return BranchRows(rows=rows, followed=track, placed=placed, ends=ends, proved_to_ends=to_ends)
-
-
-def _by_kernels(drive: Drive, anchor: Node, asked: Asked, certify: bool) -> BranchRows | None:
-    """All rows by compiled kernels, without a track; ``None`` if a row is not found."""
-    rows = _kernel_rows(drive, anchor, asked, asked.t, certify)
-    if rows is None:
-        return None
-    filled = _blank(drive, asked, certify).put(np.arange(len(asked.t)), rows)
-    return BranchRows(rows=filled, followed=None, placed=asked.t, ends=(), proved_to_ends=True)
-
-
-def _kernel_rows(
-    drive: Drive, anchor: Node, asked: Asked, placed: Array, certify: bool
-) -> SolvedRows | None:
-    """Rows at the values ``placed`` (B,) of t; proofs are left out if they are not asked for."""
-    spread = inputs_apart(drive.path.at(placed), asked.inputs).max(axis=0)
-    rows = wings.use("families.by_kernels").kernel_rows(drive, anchor, placed, spread)
-    return rows if rows is None or certify else unproved(rows, Certification.NOT_ASKED)
+    return BranchRows(rows=rows, track=track, placed=placed, ends=ends, proved_to_ends=to_ends)
 
 
 def _blank(drive: Drive, asked: Asked, certify: bool) -> SolvedRows:
@@ -479,47 +438,11 @@ class _RowSolver:
     report: Report
     certify: bool
 
-    def solve(self, quickly: bool) -> tuple[SolvedRows, bool]:
+    def solve(self) -> tuple[SolvedRows, bool]:
         """All rows that lie on the track, and whether the track is proved up to its ends."""
         there = np.flatnonzero(~np.isnan(self.placed))
         # in the order of the path: proofs join neighbours
         there = there[np.argsort(self.placed[there], kind="stable")]
-        found = self._by_kernels(there) if quickly else None
-        return found or self._along_track(there)
-
-    def _by_kernels(self, there: IndexArray) -> tuple[SolvedRows, bool] | None:
-        """Rows between the track's outer nodes by compiled kernels, the others along the track.
-
-        ``None`` where that is not the way.
-        """
-        drive, track = self.drive, self.track
-        t = self.placed[there]
-        nodes = np.array([node.t for node in track.nodes])
-        # the last steps before a limit are short, and its rows are close together
-        coarse = np.flatnonzero(np.diff(nodes) >= _COARSE * np.diff(nodes).max(initial=0.0))
-        if len(coarse) < 2 or not len(t):
-            return None
-        inside = (t > nodes[coarse[0]]) & (t < nodes[coarse[-1] + 1])
-        # rows whole turns apart may lie at one place
-        inside &= np.diff(t, prepend=-np.inf) > _APART * np.ptp(t) / len(t)
-        if not inside.any():
-            return None
-        mine, others = there[inside], there[~inside]
-        anchor = track.nodes[int(np.abs(nodes - np.median(t[inside])).argmin())]
-        asked = self.asked.take(mine)
-        rows = _kernel_rows(drive, anchor, asked, self.placed[mine], self.certify)
-        if rows is None:
-            return None
-        # the track joins the rows of the kernels to its start, if it is proved
-        found, to_ends = self._along_track(others)
-        if self.certify and not to_ends:
-            return None
-        return found.put(mine, rows), to_ends
-
-    def _along_track(self, there: IndexArray) -> tuple[SolvedRows, bool]:
-        """The table with some rows solved, in the order of the track; whether the track is proved
-        up to its ends.
-        """
         solver, path, track = self.drive.solver, self.drive.path, self.track
         blank = _blank(self.drive, self.asked, self.certify)
         if not len(there):

@@ -94,10 +94,7 @@ def sweep(
         raise InputError("time does not turn back at dead points: leave out through, or the law")
     quantities = check_quantities(model, limits_of)
     opt = given_or(NewtonOptions(), "options", options)
-    wants_track = through or bool(quantities)
-    work = _begin_sweep(
-        model, certify, opt, policy, progress, explained=explained, with_track=wants_track
-    )
+    work = _begin_sweep(model, certify, opt, policy, progress, explained=explained)
     if isinstance(work, Start):
         return _without_start(model, work)
     if through:
@@ -129,7 +126,6 @@ def _begin_sweep(
     progress: Callable[[float], None] | None,
     *,
     explained: bool = True,
-    with_track: bool = False,
 ) -> _Sweep | Start:
     """The sweep of the start's branch; the start itself, with the reason, if there is none."""
     rows = model.rows
@@ -139,7 +135,7 @@ def _begin_sweep(
     lead, rate = leading_input(rows)
     drive = Drive.through(model, rows[0], rate, lead)
     t, named = rows[:, lead], model.rows_in_file_units
-    asked = Asked(t=t, inputs=rows, in_file_units=named, with_track=with_track)
+    asked = Asked(t=t, inputs=rows, in_file_units=named)
     entry = enter_path(drive, start, asked.t, certify)
     if entry is None:
         message = "no row of the table can be reached from the input values of the guess"

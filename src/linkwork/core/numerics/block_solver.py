@@ -6,21 +6,18 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
+from typing import Any
 
 import numpy as np
 
 from linkwork.core.foundation.arrays import Array, IndexArray, StatusArray, inverses, matrix_vector
+from linkwork.core.foundation.rounding import FAR, SMALLEST_RATIO
 from linkwork.core.foundation.statuses import CONVERGED
 from linkwork.core.numerics.newton import NewtonOptions, Watch, newton
-from linkwork.core.numerics.single_rows import LARGE, MakeQuick, SingleBlock, SingleRows
-from linkwork.core.numerics.system import SolvedRows, System
+from linkwork.core.numerics.system import Recorded, SolvedRows, System
 
-__all__ = ["Block", "BlockSolver", "Linearised", "linearise_block"]
-
-# With arrays Newton-Raphson takes about as long on a block as this much work with numbers,
-_ARRAYS = 150
-_PROOFS = 75  # and a proof as this much;
-_CALL = 15  # any block takes as much as this
+FEW = 24  # rows that floats solve, one after the other, as fast as arrays all together
+LARGE = 1e3  # condition up to which balanced columns are not tried
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -28,12 +25,19 @@ class Block:
     """An irreducible part: its system, which variables of the whole it solves for, which it uses.
 
     ``variables`` lists the whole's variables in the part's order: unknowns, then known ones.
+    ``record``: the part's arithmetic as functions, where it is recorded.
     """
 
     system: System
     equations: tuple[int, ...]
     unknowns: IndexArray
     variables: IndexArray
+    record: Recorded | None = None
+
+    @cached_property
+    def places(self) -> list[int]:
+        """``variables`` as a list."""
+        return list(map(int, self.variables))
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -56,8 +60,6 @@ class BlockSolver:
     unknowns, variables : int
         n and N of the whole.
     variable_scale : (N,)
-    make_quick : MakeQuick, optional
-        Compiled code for rows that are solved one by one.
     """
 
     blocks: Sequence[Block]
@@ -65,22 +67,11 @@ class BlockSolver:
     variables: int
     variable_scale: Array
     options: NewtonOptions = field(default_factory=NewtonOptions)
-    make_quick: MakeQuick | None = None
 
     @cached_property
-    def one_by_one(self) -> SingleRows:
-        """Rows one after the other, where :meth:`goes_singly`."""
-        return SingleRows(self.singles, self.make_quick)
-
-    @cached_property
-    def singles(self) -> list[SingleBlock]:
-        """The blocks in plain numbers; empty if one of them is not known so."""
-        found = [
-            SingleBlock(block.system, one, block.variables)
-            for block in self.blocks
-            if (one := block.system.single) is not None
-        ]
-        return found if len(found) == len(self.blocks) else []
+    def is_recorded(self) -> bool:
+        """Whether all blocks are recorded."""
+        return all(block.record is not None for block in self.blocks)
 
     @cached_property
     def is_provable(self) -> bool:
@@ -93,19 +84,9 @@ class BlockSolver:
         """Whether a block has equations of any formula, whose small residuals say little."""
         return any(block.system.is_enclosed for block in self.blocks)
 
-    @cached_property
-    def _share(self) -> float:
-        """Of the work of a whole row, that of one block."""
-        works = [_CALL + block.one.work for block in self.singles]
-        return sum(works) / len(works) if works else math.inf
-
     def goes_singly(self, count: int) -> bool:
-        """Whether so few rows are solved one by one in plain numbers."""
-        return 0 < count * self._share <= _ARRAYS
-
-    def is_proved_singly(self, count: int) -> bool:
-        """Whether so few rows are proved one by one in plain numbers."""
-        return 0 < count * self._share <= _PROOFS
+        """Whether so few rows are solved and proved one by one, on floats."""
+        return self.is_recorded and 0 < count <= FEW
 
     def solve(
         self,
@@ -118,7 +99,7 @@ class BlockSolver:
         A row whose block fails keeps its guess in all later blocks.
         """
         if watches is None and self.goes_singly(len(start)):
-            return self.one_by_one.solve(start, options or self.options)
+            return self._solve_singly(start, options or self.options)
         v = start.copy()
         count = len(v)
         status = np.full(count, CONVERGED, dtype=np.int8)
@@ -130,9 +111,11 @@ class BlockSolver:
         live = np.arange(count)
         for k, block in enumerate(self.blocks):
             here = v[live[:, None], block.variables]
-            done = newton(
-                block.system, here, options or self.options, watches[k] if watches else None
-            )
+            watch, done = watches[k] if watches else None, None
+            if watch is None and block.record is not None:
+                done = _solve_recorded(block, block.record, here, options or self.options)
+            if done is None:
+                done = newton(block.system, here, options or self.options, watch)
             v[live[:, None], block.unknowns] = done.v[:, : len(block.unknowns)]
             status[live] = done.status
             iterations[live] = np.maximum(iterations[live], done.iterations)
@@ -153,6 +136,94 @@ class BlockSolver:
             residual=residual,
             first_step=first,
             contraction=contraction,
+        )
+
+    def solve_row(self, v: list[float], options: NewtonOptions) -> SingleSolution:
+        """Newton-Raphson block by block from v (N,), in place, on floats.
+
+        A row whose block fails keeps its guess in later ones.
+        """
+        found = SingleSolution()
+        limits = (
+            options.max_steps, options.equation_tolerance, options.solution_tolerance,
+            options.largest_turn,
+        )  # fmt: skip
+        for number, block in enumerate(self.blocks):
+            record = block.record
+            assert record is not None
+            places = block.places
+            status, count, error, first, contraction, *x = record.of_floats.solve(
+                *[v[k] for k in places], *limits
+            )
+            for k, value in zip(places, x, strict=False):
+                v[k] = value
+            found.iterations = max(found.iterations, count)
+            found.residual = error if error != error else max(found.residual, error)
+            found.first_step = max(found.first_step, first)
+            found.contraction = max(found.contraction, contraction)
+            if status:
+                found.status, found.failed_block = status, number
+                break
+        return found
+
+    def rates_row(
+        self, v: list[float], first: list[float], second: list[float]
+    ) -> tuple[float, float, list[int]]:
+        """:meth:`rates` at one position v (N,), on floats: condition, nearness, signs.
+
+        ``first``, ``second`` (N,): with u' and u'' of the inputs in place, filled with the rates of
+        the unknowns.
+        """
+        condition = nearness = 1.0
+        signs = []
+        for block in self.blocks:
+            record = block.record
+            assert record is not None
+            places, n = block.places, len(block.unknowns)
+            here, known = [v[k] for k in places], places[n:]
+            try:
+                *found, own, determinant = record.of_floats.rates(
+                    *here, *[first[k] for k in known], *[second[k] for k in known]
+                )
+            except (ArithmeticError, ValueError):  # a singular Jacobian
+                found, own, determinant = [math.nan] * (2 * n), math.inf, 0.0
+            for k, x, y in zip(places, found, found[n:], strict=False):
+                first[k], second[k] = x, y
+            own = own if own < math.inf else math.inf
+            condition = max(condition, own)
+            if own > LARGE:  # balancing the columns costs more than the rates themselves
+                own = _between(own, _balanced(record, here))
+            nearness = max(nearness, own)
+            signs.append((determinant > 0.0) - (determinant < 0.0))
+        return condition, nearness, signs
+
+    def _solve_singly(self, start: Array, options: NewtonOptions) -> SolvedRows:
+        """:meth:`solve` for a few rows."""
+        rows = start.tolist()
+        done = [self.solve_row(row, options) for row in rows]
+        return SolvedRows(
+            v=np.array(rows).reshape(start.shape),
+            status=np.array([x.status for x in done], dtype=np.int8),
+            failed_block=np.array([x.failed_block for x in done]),
+            iterations=np.array([x.iterations for x in done]),
+            residual=np.array([x.residual for x in done]),
+            first_step=np.array([x.first_step for x in done]),
+            contraction=np.array([x.contraction for x in done]),
+        )
+
+    def _rates_singly(self, v: Array, input_rate: Array, input_bend: Array | float) -> SolvedRows:
+        """:meth:`rates` for a few rows."""
+        first, second = np.zeros(v.shape), np.zeros(v.shape)
+        first[:, self.unknowns :], second[:, self.unknowns :] = input_rate, input_bend
+        rows = v.tolist(), first.tolist(), second.tolist()
+        found = [self.rates_row(a, b, c) for a, b, c in zip(rows[0], rows[1], rows[2], strict=True)]
+        return SolvedRows(
+            v=v,
+            first=np.array(rows[1]),
+            second=np.array(rows[2]),
+            condition=np.array([x for x, _, _ in found]),
+            nearness=np.array([x for _, x, _ in found]),
+            orientation=np.array([x for _, _, x in found], dtype=np.int8).reshape(len(v), -1),
         )
 
     def linearise(self, v: Array) -> list[Linearised]:
@@ -205,8 +276,7 @@ class BlockSolver:
             ``v``, ``first``, ``second``, ``condition``, ``nearness``, ``orientation``.
         """
         if linear is None and self.goes_singly(len(v)):
-            return self.one_by_one.rates(v, input_rate, input_bend)
-        parts = self.linearise(v) if linear is None else linear
+            return self._rates_singly(v, input_rate, input_bend)
         count = len(v)
         first = np.zeros((count, self.variables))
         second = np.zeros((count, self.variables))
@@ -216,9 +286,15 @@ class BlockSolver:
         orientation = np.zeros((count, len(self.blocks)), dtype=np.int8)
         for k, block in enumerate(self.blocks):
             n = len(block.unknowns)
-            system = block.system
+            if linear is None and block.record is not None:
+                own, near, orientation[:, k] = _recorded_rates(
+                    block, block.record, v, first, second
+                )
+                condition, nearness = np.maximum(condition, own), np.maximum(nearness, near)
+                continue
+            system, part = block.system, linearise_block(block, v) if linear is None else linear[k]
             here = v[:, block.variables]
-            jacobian, inverse = parts[k].jacobian, parts[k].inverse
+            jacobian, inverse = part.jacobian, part.inverse
             # earlier blocks have left their rates there: they are known motions for this one
             known = block.variables[n:]
             direction = np.empty_like(here)
@@ -239,7 +315,7 @@ class BlockSolver:
             if own.max(initial=0.0) > LARGE:
                 own = _nearness(own, system.equation_scale, jacobian[:, :, :n], inverse)
             nearness = np.maximum(nearness, own)
-            orientation[:, k] = parts[k].sign
+            orientation[:, k] = part.sign
         return SolvedRows(
             v=v,
             first=first,
@@ -256,6 +332,110 @@ class BlockSolver:
             f = block.system.residual(v[:, block.variables]) / block.system.equation_scale
             worst = np.maximum(worst, np.abs(f).max(axis=1, initial=0.0))
         return worst
+
+
+@dataclass(slots=True)
+class SingleSolution:
+    """How Newton-Raphson ended for one row; columns of :class:`SolvedRows`."""
+
+    status: int = CONVERGED
+    failed_block: int = -1
+    iterations: int = 0
+    residual: float = 0.0
+    first_step: float = 0.0
+    contraction: float = 0.0
+
+
+def _columns(v: Array) -> list[Array]:
+    """The columns of v (B, N), each in one piece."""
+    return list(np.ascontiguousarray(v.T))
+
+
+def _solve_recorded(
+    block: Block, record: Recorded, start: Array, options: NewtonOptions
+) -> SolvedRows | None:
+    """Newton-Raphson on a block's own variables (B, N); ``None`` where a row needs more care: a
+    shortened step, or one that fails.
+    """
+    correct, n = record.of_arrays.correct, len(block.unknowns)
+    values, count = _columns(start), len(start)
+    iterations, first, contraction = (
+        np.zeros(count, dtype=np.int64),
+        np.zeros(count),
+        np.zeros(count),
+    )
+    last: Array | None = None
+    with np.errstate(all="ignore"):
+        for k in range(options.max_steps + 1):
+            error, size, turn, *change = correct(*values)
+            done = error <= options.equation_tolerance  # eq. (8)
+            if last is not None:
+                done |= last <= options.solution_tolerance
+            if done.all():
+                break
+            going = ~done
+            lost = ~(error < np.inf) | going & (~(size < np.inf) | (turn > options.largest_turn))
+            if k == options.max_steps or lost.any() or (last is not None and (last > FAR).any()):
+                return None
+            if done.any():  # rows that are done stay
+                change, size = [np.where(done, 0.0, x) for x in change], np.where(done, 0.0, size)
+            values[:n] = [v - x for v, x in zip(values, change, strict=False)]  # eq. (6)
+            iterations += going
+            if last is None:
+                first = size
+            else:
+                ratio = np.where(size > SMALLEST_RATIO, size / last, 0.0)
+                contraction = np.maximum(contraction, ratio)
+            last = size
+    return SolvedRows(
+        v=np.stack(values, axis=1),
+        status=np.full(count, CONVERGED, dtype=np.int8),
+        iterations=iterations,
+        residual=error,
+        first_step=first,
+        contraction=contraction,
+    )
+
+
+def _recorded_rates(
+    block: Block, record: Recorded, v: Array, first: Array, second: Array
+) -> tuple[Array, Array, StatusArray]:
+    """Rates of one block, in place: condition, nearness, signs of determinants."""
+    n, known = len(block.unknowns), block.variables[len(block.unknowns) :]
+    here = _columns(v[:, block.variables])
+    functions, count = record.of_arrays, len(v)
+    with np.errstate(all="ignore"):
+        *found, own, determinant = functions.rates(
+            *here, *_columns(first[:, known]), *_columns(second[:, known])
+        )
+        for i, k in enumerate(block.unknowns):
+            first[:, k], second[:, k] = found[i], found[n + i]
+        condition = np.broadcast_to(own, count)
+        condition = np.where(np.isfinite(condition), condition, np.inf)
+        nearness, risen = condition, np.flatnonzero(condition > LARGE)
+        if len(risen):
+            (balanced,) = functions.balanced(*(x[risen] for x in here))
+            least = np.where(np.isfinite(balanced), np.minimum(condition[risen], balanced), np.inf)
+            nearness = condition.copy()
+            nearness[risen] = _between(condition[risen], least)
+        sign = np.nan_to_num(np.sign(determinant))
+    return condition, nearness, np.broadcast_to(sign, count).astype(np.int8)
+
+
+def _balanced(record: Recorded, v: list[float]) -> float:
+    """The condition with equally long columns at one position."""
+    try:
+        (found,) = record.of_floats.balanced(*v)
+    except (ArithmeticError, ValueError):
+        return math.inf
+    return float(found) if found == found else math.inf
+
+
+def _between(condition: Any, balanced: Any) -> Any:
+    """How near to a singular position, see :func:`_nearness`."""
+    if isinstance(condition, float):
+        return math.sqrt(condition) * math.sqrt(min(condition, balanced))  # eq. (15)
+    return np.sqrt(condition) * np.sqrt(np.minimum(condition, balanced))
 
 
 def linearise_block(block: Block, v: Array) -> Linearised:

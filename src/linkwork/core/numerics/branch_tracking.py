@@ -5,13 +5,14 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 
 from linkwork.core.foundation.arrays import Array, IndexArray, StatusArray
 from linkwork.core.foundation.rounding import REGULAR_CONDITION, UNIT_ROUNDOFF
 from linkwork.core.foundation.statuses import CONVERGED, Status
-from linkwork.core.numerics.block_solver import BlockSolver
+from linkwork.core.numerics.block_solver import BlockSolver, SingleSolution
 from linkwork.core.numerics.marching import Attempt, StepBounds, by_error, march
 from linkwork.core.numerics.newton import unlimited
 from linkwork.core.numerics.position_proof import (
@@ -23,7 +24,6 @@ from linkwork.core.numerics.position_proof import (
     rounding_of_inputs,
     steps_connected,
 )
-from linkwork.core.numerics.single_rows import SingleSolution
 from linkwork.core.numerics.system import SolvedRows
 
 
@@ -37,6 +37,11 @@ class InputPath:
     origin: Array
     rate: Array
     size: float = 1.0
+
+    @cached_property
+    def rates(self) -> list[float]:
+        """``rate`` as a list."""
+        return list(map(float, self.rate))
 
     def at(self, t: float | Array) -> Array:
         """u(t), (p,) or (B, p)."""
@@ -179,17 +184,16 @@ Watch = Callable[[Node, Node], bool]
 
 def node_at(solver: BlockSolver, path: InputPath, t: float, v: Array, iterations: int = 0) -> Node:
     """The node of a converged position."""
-    if solver.goes_singly(1):
-        first, second = np.zeros(len(v)), np.zeros(len(v))
-        first[solver.unknowns :] = path.rate
-        signs = np.zeros(len(solver.blocks), dtype=np.int8)
-        condition, nearness = solver.one_by_one.take_rates(v, first, second, signs)
+    if solver.is_recorded:
+        unknown = [0.0] * solver.unknowns
+        first, second = unknown + path.rates, unknown + [0.0] * len(path.rates)
+        condition, nearness, signs = solver.rates_row(v.tolist(), first, second)
         return Node(
             t=t,
             v=v,
-            first=first,
-            second=second,
-            orientation=signs,
+            first=np.array(first),
+            second=np.array(second),
+            orientation=np.array(signs, dtype=np.int8),
             condition=condition,
             nearness=nearness,
             iterations=iterations,
@@ -351,9 +355,10 @@ class _Trial:
     def _solve(self, guess: Array) -> tuple[Array, SingleSolution]:
         """Newton-Raphson from a guess (N,): where it ended, and how."""
         solver = self.solver
-        if solver.goes_singly(1):
-            v = guess.copy()
-            return v, solver.one_by_one.solve_row(v, self.quick)
+        if solver.is_recorded:
+            row = guess.tolist()
+            found = solver.solve_row(row, self.quick)
+            return np.array(row), found
         done = solver.solve(guess[None, :], self.quick)
         return done.v[0], SingleSolution(
             status=int(done.status[0]),

@@ -55,7 +55,7 @@ class Bounds:
     omega_slope: Array
 
 
-@dataclass(frozen=True, kw_only=True, eq=False)
+@dataclass(frozen=True, eq=False)
 class Radii:
     """Results of proofs, (B,): ``holds``; a solution within ``existence_radius``, no other within
     ``uniqueness_radius``.

@@ -10,14 +10,10 @@ from functools import cache
 import numpy as np
 
 from linkwork.core.foundation.arrays import Array, BoolArray, solutions
-from linkwork.core.foundation.rounding import EPSILON
+from linkwork.core.foundation.rounding import EPSILON, FAR, SMALLEST_RATIO
 from linkwork.core.foundation.statuses import CONVERGED, Status
 from linkwork.core.foundation.values import check_values
 from linkwork.core.numerics.system import SolvedRows, System
-
-FAR = 1e9  # weighted size of a correction beyond which the iteration has run away
-#: Below that rounding, not the equations, decides the ratio of two corrections.
-SMALLEST_RATIO = 1e-9
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -10,7 +10,7 @@ import numpy as np
 from linkwork.core.foundation.arrays import Array, BoolArray, CountArray, IndexArray
 from linkwork.core.foundation.rounding import UNIT_ROUNDOFF
 from linkwork.core.foundation.statuses import CONVERGED
-from linkwork.core.numerics.block_solver import BlockSolver, Linearised
+from linkwork.core.numerics.block_solver import BlockSolver
 from linkwork.core.numerics.branch_tracking import InputPath, quintic
 from linkwork.core.numerics.position_proof import (
     Place,
@@ -18,6 +18,7 @@ from linkwork.core.numerics.position_proof import (
     expansions,
     prove,
     reach,
+    recorded_places,
     rounding_of_inputs,
     steps_connected,
     steps_disproved,
@@ -25,6 +26,7 @@ from linkwork.core.numerics.position_proof import (
 from linkwork.core.numerics.system import SolvedRows
 
 _HALVINGS = 45  # of one step, at most
+_QUICK = 5  # before weights are fitted to it
 _LANES = 1024  # steps halved together
 _HALFWAY = np.array([0.5])
 _SHORTER = 0.5 ** np.arange(1, 6)  # parts of a step that are tried before it is divided
@@ -47,17 +49,21 @@ class Allowance:
 class Prover:
     """The equations of a path; ``exact``: with residuals that are rounded once.
 
-    ``halvings`` of one step before it counts as not proved.
+    ``halvings`` of one step before it counts as not proved; ``fitted``: whether weights are fitted
+    to each step.
     """
 
     solver: BlockSolver
     path: InputPath
     exact: bool
     halvings: int = _HALVINGS
+    fitted: bool = True
 
-    def expansions(self, v: Array, linear: Sequence[Linearised] | None = None) -> list[Place]:
+    def places(self, v: Array) -> list[Place]:
         """What proofs need of positions (B, N)."""
-        return expansions(self.solver, v, linear, exact=self.exact)
+        if self.exact or self.fitted:
+            return expansions(self.solver, v, exact=self.exact)
+        return recorded_places(self.solver, v)
 
 
 def take_expansions(places: Sequence[Place], index: IndexArray | slice) -> list[Place]:
@@ -307,11 +313,10 @@ def _between(
     guess[:, solver.unknowns :] = path.at(t)
     done = solver.solve(guess)
     v = solver.sharpen(done.v) if prover.exact else done.v
-    linear = None if solver.is_proved_singly(len(v)) else solver.linearise(v)
-    rates = solver.rates(v, path.rate, linear)
+    rates = solver.rates(v, path.rate)
     input_radius = rounding_of_inputs(v, solver.unknowns)
     points = SolvedRows(t=t, v=v, first=rates.first, second=rates.second, input_radius=input_radius)
-    return points, done.status == CONVERGED, prover.expansions(v, linear)
+    return points, done.status == CONVERGED, prover.places(v)
 
 
 # ----------------------------------------------------------------------
@@ -390,7 +395,7 @@ def prove_path(
     position solved in between. Many open steps are worked on together.
     """
     count = len(points.t)
-    prover = Prover(solver, path, exact)
+    prover = Prover(solver, path, exact, fitted=exact or not solver.is_recorded)
     allowance = Allowance(_MOST + _MOST_EACH * count if most is None else most)
     begins = list(range(0, max(count - 1, 1), _PIECE))
     if anchor is not None:
@@ -435,7 +440,8 @@ def prove_paths(
 
     ``halvings`` of one step, at most; the usual number by default.
     """
-    prover, allowance = Prover(solver, path, False), Allowance(most)
+    fitted = not solver.is_recorded
+    prover, allowance = Prover(solver, path, False, fitted=fitted), Allowance(most)
     prover = prover if halvings is None else replace(prover, halvings=halvings)
     found: list[ProvenPath] = []
     for some in _groups([len(points.t) for points in paths]):
@@ -488,7 +494,7 @@ def _piece(
     allowance: Allowance,
 ) -> ProvenPath:
     """Strands one after the other; what lies between two of them is no step."""
-    solver, places = prover.solver, prover.expansions(points.v)
+    solver, places = prover.solver, prover.places(points.v)
     position = prove(solver, points.v, points.input_radius, places)
     steps = len(points.t) - 1
     nothing = np.zeros(steps, dtype=bool)
@@ -515,15 +521,29 @@ def _piece(
         open_, parts = open_[left_over], parts[left_over]
     if not len(open_):
         return ProvenPath(position=position, connected=connected, pieces=pieces, given_up=nothing)
-    work = Halving(prover, strands, position.holds)
-    work.lose(np.flatnonzero(apart & own))
+    apart &= own
+    quick = replace(prover, halvings=min(prover.halvings, _QUICK))
+    work = Halving(prover if prover.fitted else quick, strands, position.holds)
+    work.lose(np.flatnonzero(apart))
     queue = work.of_use(_open_steps(left, right, near, open_))
     parts = parts[np.searchsorted(open_, queue.owner)]
     work.run(work.divide(queue, parts, allowance), allowance)
+    pieces += work.pieces
+    if not prover.fitted:  # some steps are proved in fitted weights only
+        connected[open_] = work.proved[open_]
+        fitted = replace(prover, fitted=True)
+        for begin, end in ((left, right), (right, left)):
+            open_ = open_[~connected[open_] & ~apart[open_]]
+            here, there = begin.take(open_), end.take(open_)
+            held, disproved = prove_steps(solver, here, there, near[open_], fitted.places(here.v))
+            connected[open_], apart[open_] = held, disproved
+        open_ = open_[~connected[open_] & ~apart[open_]]
+        work = Halving(fitted, strands, position.holds)
+        work.lose(np.flatnonzero(apart))
+        work.run(work.of_use(_open_steps(left, right, near, open_)), allowance)
+        pieces += work.pieces
     connected[open_] = work.proved[open_]
-    return ProvenPath(
-        position=position, connected=connected, pieces=pieces + work.pieces, given_up=work.given_up
-    )
+    return ProvenPath(position=position, connected=connected, pieces=pieces, given_up=work.given_up)
 
 
 def _open_steps(left: SolvedRows, right: SolvedRows, near: Array, steps: IndexArray) -> OpenSteps:

@@ -9,23 +9,22 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 
-from linkwork.core.foundation.arrays import Array, BoolArray
+from linkwork.core.foundation.arrays import Array, BoolArray, IndexArray
 from linkwork.core.foundation.rounding import UNIT_ROUNDOFF
-from linkwork.core.numerics.block_solver import Block, BlockSolver, Linearised
+from linkwork.core.numerics.block_solver import (
+    FEW,
+    Block,
+    BlockSolver,
+    Linearised,
+    linearise_block,
+)
 from linkwork.core.numerics.enclosed import Enclosed
 from linkwork.core.numerics.kantorovich import Expansion, Majorant, Radii, expansion, weighted_radii
-from linkwork.core.numerics.single_proof import (
-    PlacesOfRow,
-    SingleExpansions,
-    chain_radii,
-    expand_rows,
-    fitted_radii_singly,
-    radii_singly,
-    rows_of,
-)
+from linkwork.core.numerics.system import Recorded
 
 __all__ = [
     "Place",
@@ -42,8 +41,76 @@ __all__ = [
 ]
 
 
+@dataclass(frozen=True, eq=False)
+class RecordedPlace:
+    """A block at B positions by its record: what proofs need, (B,) each or the same for all."""
+
+    record: Recorded
+    data: Sequence[Any]
+    count: int
+
+    def take(self, index: IndexArray | slice) -> RecordedPlace:
+        """At some of the positions, in the order of ``index``."""
+        data = [x[index] if np.ndim(x) else x for x in self.data]
+        count = len(range(self.count)[index]) if isinstance(index, slice) else len(index)
+        return RecordedPlace(self.record, data, count)
+
+    def radii(self, block: Block, known: Array) -> Radii:
+        """The proofs for known variables that may be off by ``known`` (B, p)."""
+        n, errors = len(block.unknowns), np.ascontiguousarray(known.T)
+        with np.errstate(all="ignore"):
+            holds, radius, unique, *found = self.record.of_arrays.within(*self.data, *errors)
+        shape = self.count
+        own = np.empty((2, n, shape))
+        for k, x in enumerate(found):
+            own[k // n, k % n] = x
+        return _radii_where(np.broadcast_to(holds, shape), radius, unique, own)
+
+
+@dataclass(frozen=True, eq=False)
+class RecordedRows:
+    """A block at a few positions by its record, on floats; ``None`` where there are no numbers."""
+
+    record: Recorded
+    rows: Sequence[Sequence[float] | None]
+
+    def take(self, index: IndexArray | slice) -> RecordedRows:
+        """At some of the positions, in the order of ``index``."""
+        if isinstance(index, slice):
+            return RecordedRows(self.record, self.rows[index])
+        return RecordedRows(self.record, [self.rows[k] for k in index.tolist()])
+
+    def radii(self, block: Block, known: Array) -> Radii:
+        """The proofs for known variables that may be off by ``known`` (B, p)."""
+        n, within = len(block.unknowns), self.record.of_floats.within
+        found = np.empty((3 + 2 * n, len(self.rows)))
+        for k, (row, errors) in enumerate(zip(self.rows, known.tolist(), strict=True)):
+            try:
+                found[:, k] = _NOT_PROVED if row is None else within(*row, *errors)
+            except (ArithmeticError, ValueError):
+                found[:, k] = _NOT_PROVED
+        return _radii_where(found[0] > 0.0, found[1], found[2], found[3:].reshape(2, n, -1))
+
+
+_NOT_PROVED = 0.0
+
+
+def _radii_where(holds: BoolArray, radius: Array, unique: Array, own: Array) -> Radii:
+    """Radii where the proof holds; own (2, n, B): errors and distances of others."""
+    if holds.all():
+        radius, unique = (np.broadcast_to(x, holds.shape).copy() for x in (radius, unique))
+        return Radii(holds.copy(), radius, unique, own[0].T, own[1].T)
+    return Radii(
+        holds.copy(),
+        np.where(holds, radius, np.inf),
+        np.where(holds, unique, 0.0),
+        np.where(holds, own[0], np.inf).T,
+        np.where(holds, own[1], 0.0).T,
+    )
+
+
 #: The data of a block at some positions; ``None`` where no bounds are known.
-Place = Expansion | SingleExpansions | Enclosed | None
+Place = Expansion | RecordedPlace | RecordedRows | Enclosed | None
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -87,19 +154,44 @@ def expansions(
     *,
     exact: bool = False,
 ) -> list[Place]:
-    """The data that proofs need of positions v (B, N), block by block.
+    """The data that proofs need of positions v (B, N), block by block, with fitted weights.
 
     ``exact``: see :func:`~linkwork.core.numerics.kantorovich.expansion`. ``None`` for a block
     without known bounds.
     """
-    if linear is None and solver.is_proved_singly(len(v)):
-        return list(expand_rows(solver, v, exact=exact))
     parts = solver.linearise(v) if linear is None else linear
     found: list[Place] = []
     with np.errstate(all="ignore"):
         for block, part in zip(solver.blocks, parts, strict=True):
             found.append(_place(block, part, v, exact=exact))
     return found
+
+
+def recorded_places(solver: BlockSolver, v: Array) -> list[Place]:
+    """The data that proofs need of positions v (B, N), block by block.
+
+    Of blocks that are recorded in the usual weights, which suffice nearly always.
+    """
+    return [_recorded_place(block, v) for block in solver.blocks]
+
+
+def _recorded_place(block: Block, v: Array) -> Place:
+    record = block.record
+    if record is None:
+        return _place(block, linearise_block(block, v), v)
+    if len(v) > FEW:
+        here = np.ascontiguousarray(v[:, block.variables].T)
+        with np.errstate(all="ignore"):
+            data = record.of_arrays.place(*here)
+        return RecordedPlace(record, data, len(v))
+    place = record.of_floats.place
+    rows: list[Sequence[float] | None] = []
+    for row in v[:, block.variables].tolist():
+        try:
+            rows.append(place(*row))
+        except (ArithmeticError, ValueError):  # a singular Jacobian, or no number
+            rows.append(None)
+    return RecordedRows(record, rows)
 
 
 def _place(
@@ -133,10 +225,7 @@ def prove(
     -----
     A block without known bounds proves nothing: ``holds`` is false.
     """
-    places = expansions(solver, v) if places is None else places
-    singly = rows_of(places)
-    if singly is not None:
-        return _prove_singly(solver, singly, input_radius)
+    places = recorded_places(solver, v) if places is None else places
     count = len(v)
     error_bound = np.zeros((count, solver.variables))
     error_bound[:, solver.unknowns :] = input_radius
@@ -144,10 +233,10 @@ def prove(
     existence_radius = np.full((count, len(solver.blocks)), np.inf)
     uniqueness_radius = np.zeros((count, len(solver.blocks)))
     for k, (block, place) in enumerate(zip(solver.blocks, places, strict=True)):
-        if not isinstance(place, Expansion | Enclosed):
+        if place is None:
             holds[:] = False
             continue
-        found = _position(block, place, error_bound)
+        found = _position(block, place, v, error_bound)
         holds &= found.holds
         existence_radius[:, k], uniqueness_radius[:, k] = (
             found.existence_radius,
@@ -173,43 +262,6 @@ def roots_proved(solver: BlockSolver, v: Array) -> BoolArray:
     return prove(solver, v, rounding_of_inputs(v, solver.unknowns)).holds
 
 
-def _prove_singly(solver: BlockSolver, rows: Sequence[PlacesOfRow], radius: Array) -> Proof:
-    """``prove`` for a few rows, one after the other."""
-    holds, existence, uniqueness, errors = [], [], [], []
-    for places, given in zip(rows, radius.tolist(), strict=True):
-        own, error_bound = chain_radii(solver, places, given, radii_singly)
-        holds.append(all(radii.holds for radii in own))
-        existence.append([radii.existence_radius for radii in own])
-        uniqueness.append([radii.uniqueness_radius for radii in own])
-        errors.append(error_bound)
-    blocks = len(rows), len(solver.blocks)
-    return Proof(
-        holds=np.array(holds, dtype=bool),
-        existence_radius=np.array(existence).reshape(blocks),
-        uniqueness_radius=np.array(uniqueness).reshape(blocks),
-        error_bound=np.array(errors).reshape(len(rows), solver.variables),
-    )
-
-
-def _reach_singly(solver: BlockSolver, rows: Sequence[PlacesOfRow], radius: Array) -> Reach:
-    """``reach`` for a few rows, one after the other."""
-    n, holds, errors, isolations = solver.unknowns, [], [], []
-    for places, given in zip(rows, radius.tolist(), strict=True):
-        own, error_bound = chain_radii(solver, places, given, fitted_radii_singly)
-        holds.append(all(radii.holds for radii in own))
-        errors.append(error_bound[:n])
-        isolation = [0.0] * n
-        for block, radii in zip(solver.singles, own, strict=True):
-            for k, x in zip(block.unknowns, radii.isolation_radius, strict=True):
-                isolation[k] = x
-        isolations.append(isolation)
-    return Reach(
-        holds=np.array(holds, dtype=bool),
-        error_bound=np.array(errors).reshape(len(rows), n),
-        isolation_radius=np.array(isolations).reshape(len(rows), n),
-    )
-
-
 def prove_block(block: Block, part: Linearised, v: Array, error_bound: Array) -> Radii:
     """Prove one block at v (B, N) for all values of its known variables.
 
@@ -223,17 +275,29 @@ def prove_block(block: Block, part: Linearised, v: Array, error_bound: Array) ->
     with np.errstate(all="ignore"):
         place = _place(block, part, v)
     assert place is not None
-    return _position(block, place, error_bound)
+    return _position(block, place, v, error_bound)
 
 
-def _position(block: Block, place: Expansion | Enclosed, error_bound: Array) -> Radii:
+def _position(
+    block: Block,
+    place: Expansion | RecordedPlace | RecordedRows | Enclosed,
+    v: Array,
+    error_bound: Array,
+) -> Radii:
     """In the block's own weights; where they do not suffice, in fitted ones."""
     found = _radii(block, place, error_bound)
     # fitting costs several products: the usual weights serve for most positions
     open_ = np.flatnonzero(~found.holds)
     if not len(open_) or isinstance(place, Enclosed):
         return found
-    fitted = _radii(block, place.take(open_), error_bound[open_], fitted=True)
+    if isinstance(place, Expansion):
+        place = place.take(open_)
+    else:
+        with np.errstate(all="ignore"):
+            again = _place(block, linearise_block(block, v[open_]), v[open_])
+        assert isinstance(again, Expansion)
+        place = again
+    fitted = _radii(block, place, error_bound[open_], fitted=True)
     weights = block.system.variable_scale[: len(block.unknowns)]
     found.holds[open_], found.error_bound[open_] = fitted.holds, fitted.error_bound
     found.isolation_radius[open_] = fitted.isolation_radius
@@ -244,15 +308,21 @@ def _position(block: Block, place: Expansion | Enclosed, error_bound: Array) -> 
 
 
 def _radii(
-    block: Block, place: Expansion | Enclosed, error_bound: Array, fitted: bool = False
+    block: Block,
+    place: Expansion | RecordedPlace | RecordedRows | Enclosed,
+    error_bound: Array,
+    fitted: bool = False,
 ) -> Radii:
-    """In the block's own weights or in fitted ones."""
+    """In the block's own weights or, of an expansion, in fitted ones."""
     n = len(block.unknowns)
+    known = error_bound[:, block.variables[n:]]
     if isinstance(place, Enclosed):  # its boxes are of all sizes
-        return place.radii(error_bound[:, block.variables[n:]])
+        return place.radii(known)
+    if isinstance(place, RecordedPlace | RecordedRows):
+        return place.radii(block, known)
     weights = block.system.variable_scale[:n]
     with np.errstate(all="ignore"):
-        majorant = Majorant(place, error_bound[:, block.variables[n:]])
+        majorant = Majorant(place, known)
         if fitted:
             weights = majorant.fit_weights(weights)
         return weighted_radii(majorant.bounds(weights), weights)
@@ -288,19 +358,16 @@ def reach(
 ) -> Reach:
     """How far around positions v (B, N) one solution exists for all inputs in ``input_radius``.
 
-    As :func:`prove`, in weights fitted to each step.
+    As :func:`prove`, in weights fitted to each step where ``places`` are expansions, as by default.
     """
     places = expansions(solver, v) if places is None else places
-    singly = rows_of(places)
-    if singly is not None:
-        return _reach_singly(solver, singly, input_radius)
     count = len(v)
     error_bound = np.zeros((count, solver.variables))
     error_bound[:, solver.unknowns :] = input_radius
     holds = np.ones(count, dtype=bool)
     isolation_radius = np.zeros((count, solver.unknowns))
     for block, place in zip(solver.blocks, places, strict=True):
-        if not isinstance(place, Expansion | Enclosed):
+        if place is None:
             holds[:] = False
             continue
         found = _radii(block, place, error_bound, fitted=True)

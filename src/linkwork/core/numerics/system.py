@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from typing import Any, NoReturn, Protocol, dataclass_transform
 
 import numpy as np
@@ -39,10 +39,6 @@ class SmallSystem(Protocol):
 
 class System(SmallSystem, Protocol):
     """Equations with the further functions that path following and proofs need."""
-
-    @property
-    def single(self) -> SingleSystem | None:
-        """The same at one position at a time, where that is known."""
 
     @property
     def is_angle(self) -> BoolArray:
@@ -84,99 +80,23 @@ class System(SmallSystem, Protocol):
         """Moduli of the second derivatives multiplied by a matrix (B, n, m)."""
 
 
-class SingleSystem(Protocol):
-    """Equations at one position v (N,), in plain numbers; results are not to be changed."""
+class BlockFunctions(Protocol):
+    """A block's arithmetic as functions; see :mod:`linkwork.core.record.block_record`."""
+
+    def __getattr__(self, name: str) -> Callable[..., Any]:
+        """``solve``, ``correct``, ``rates``, ``balanced``, ``place`` or ``within``."""
+
+
+class Recorded(Protocol):
+    """A block whose arithmetic is recorded."""
 
     @property
-    def unknowns(self) -> int:
-        """n."""
+    def of_floats(self) -> BlockFunctions:
+        """Its functions of floats."""
 
     @property
-    def variables(self) -> int:
-        """N."""
-
-    @property
-    def work(self) -> int:
-        """Of one evaluation, about the number of products."""
-
-    @property
-    def loop_rows(self) -> int:
-        """How many of the m equations belong to loops."""
-
-    @property
-    def loop_phases(self) -> int:
-        """How many of the phases belong to loops; each later one belongs to one sum."""
-
-    @property
-    def phases(self) -> Sequence[Sequence[tuple[int, float]]]:
-        """Variables and weights of the G phases."""
-
-    @property
-    def packed(self) -> tuple[list[int], list[float]] | None:
-        """The terms as numbers, for compiled code; ``None`` if it does not know them."""
-
-    @property
-    def pairs(self) -> Sequence[tuple[int, int]]:
-        """The variable length and the phase of P pairs."""
-
-    def residual(self, v: Sequence[float]) -> list[float]:
-        """F, (m,)."""
-
-    def residual_and_jacobian(self, v: Sequence[float]) -> tuple[list[float], list[list[float]]]:
-        """F, (m,), and dF/dv, (m, N)."""
-
-    def second_directional_derivative(self, v: Sequence[float], d: Sequence[float]) -> list[float]:
-        """D²F[d, d], (m,)."""
-
-    def curvature(self, v: Sequence[float], matrix: Sequence[list[float]]) -> SingleCurvature:
-        """As :meth:`System.curvature`."""
-
-
-class QuickRows(Protocol):
-    """Blocks in compiled code, of which rows v (N,) are solved one by one."""
-
-    def solve(
-        self, v: Array, max_steps: int, limits: tuple[float, float, float, float, float]
-    ) -> tuple[int, int, int, float, float, float]:
-        """Newton-Raphson, in place: status, failed block, iterations, residual, first step and
-        contraction.
-
-        ``limits``: both tolerances, the largest turn, the correction that has run away, and the
-        smallest one of which a ratio is taken.
-        """
-
-    def take_rates(
-        self, v: Array, first: Array, second: Array, signs: StatusArray, large: float
-    ) -> tuple[float, float]:
-        """Rates of the unknowns, after those of the inputs, and signs of determinants, in place:
-        condition and nearness.
-
-        ``large``: the condition up to which balanced columns are not tried.
-        """
-
-
-class SingleCurvature(Protocol):
-    """As :class:`Curvature` at one position."""
-
-    @property
-    def phase(self) -> list[list[float]]:
-        """(n, G)."""
-
-    @property
-    def slide(self) -> list[list[float]]:
-        """(n, P)."""
-
-    @property
-    def rounding(self) -> list[float]:
-        """(m,)."""
-
-    @property
-    def jacobian_rounding(self) -> list[list[float]]:
-        """(m, N)."""
-
-    @property
-    def printing(self) -> list[float]:
-        """(n,)."""
+    def of_arrays(self) -> BlockFunctions:
+        """Its functions of arrays."""
 
 
 class Curvature(Protocol):

@@ -56,10 +56,13 @@ class Op(IntEnum):
     LESS = 19  # the target's present value less a
     INPUT = 20  # a named register; no instruction
     CONSTANT = 21  # no instruction
-    ATAN2 = 22  # the direction of (b, a); printed only, no kernel runs it
+    # printed only, no kernel runs them:
+    ATAN2 = 22  # the direction of (b, a)
+    CALL = 23  # a function of a, by its name
+    PART = 24  # one of the numbers that a call gives, by its place
 
 
-_ONE = (Op.COPY, Op.NEG, Op.ABS, Op.SQRT, Op.SIN, Op.LESS)
+_ONE = (Op.COPY, Op.NEG, Op.ABS, Op.SQRT, Op.SIN, Op.LESS, Op.CALL, Op.PART)
 _THREE = (Op.FMA, Op.FMS, Op.FNMA, Op.WHERE)
 #: How many of a, b, c an instruction reads.
 SOURCES = {op: 1 if op in _ONE else 3 if op in _THREE else 2 for op in Op}
@@ -327,6 +330,11 @@ class Recorder(Arithmetic[Value]):
     def direction(self, y: Value | float, x: Value | float) -> Value:
         """The angle of (x, y), in printed programs only."""
         return self._new(Op.ATAN2, self._value(y).number, self._value(x).number)
+
+    def call(self, function: str, x: Value | float, part: int) -> Value:
+        """One of the numbers that a function gives at x, in printed functions only."""
+        called = self._new(Op.CALL, self._value(x).number, payload=function)
+        return self._new(Op.PART, called.number, payload=part)
 
     def at_most(self, x: Value | float, y: Value | float) -> Value:
         """Where x <= y; false where one is not a number."""

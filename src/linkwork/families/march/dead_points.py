@@ -25,6 +25,8 @@ import numpy as np
 
 from linkwork.core.foundation.arrays import Array, BoolArray, IndexArray
 from linkwork.core.foundation.rounding import UNIT_ROUNDOFF
+from linkwork.core.record.block_proof import BlockProof
+from linkwork.core.record.closure import BlockPart, Closure, solve_linear
 from linkwork.core.record.recorder import (
     LANES,
     Code,
@@ -38,8 +40,6 @@ from linkwork.core.record.recorder import (
 from linkwork.core.table.loop_table import LoopTable
 from linkwork.families.compiled.compiling import compiled, compiled_within
 from linkwork.families.compiled.interpreter import run
-from linkwork.families.march.closure import BlockPart, Closure, solve_linear
-from linkwork.families.march.proof_program import BlockProof
 
 _CLEARLY = 32.0  # twice as many errors of t as lie between a dead point and the places aside
 _LEAST = 1e-9  # weighted: the nearest of them

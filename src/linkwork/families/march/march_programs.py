@@ -34,6 +34,15 @@ import numpy as np
 
 from linkwork.core.foundation.arrays import IndexArray
 from linkwork.core.foundation.rounding import UNIT_ROUNDOFF
+from linkwork.core.record.block_proof import BlockProof
+from linkwork.core.record.closure import (
+    BlockPart,
+    Closure,
+    Phase,
+    cosine_and_sine,
+    phasor_name,
+    solve_linear,
+)
 from linkwork.core.record.printing import Body, Language
 from linkwork.core.record.recorder import (
     ROLES,
@@ -45,15 +54,6 @@ from linkwork.core.record.recorder import (
     reserve,
 )
 from linkwork.core.table.loop_table import LoopTable
-from linkwork.families.march.closure import (
-    BlockPart,
-    Closure,
-    Phase,
-    cosine_and_sine,
-    phasor_name,
-    solve_linear,
-)
-from linkwork.families.march.proof_program import BlockProof
 
 NODES = ROLES - 1  # that a prediction can use
 #: Registers of the weights of nodes' values and derivatives in a prediction.

@@ -25,7 +25,7 @@ import numpy as np
 
 from linkwork.core.foundation.arrays import Array, IndexArray, TurnArray
 from linkwork.core.foundation.loading import share_out
-from linkwork.core.foundation.rounding import UNIT_ROUNDOFF
+from linkwork.core.record.closure import BlockPart, Closure, solve_linear
 from linkwork.core.record.recorder import (
     LANES,
     Code,
@@ -37,10 +37,8 @@ from linkwork.core.record.recorder import (
     reserve,
 )
 from linkwork.core.table.loop_table import LoopTable
-from linkwork.families.compiled.compiling import compiled, compiled_for, types
+from linkwork.families.compiled.compiling import compiled
 from linkwork.families.compiled.interpreter import run
-from linkwork.families.march.closure import BlockPart, Closure, solve_linear
-from linkwork.families.march.proof_program import BlockProof
 
 Number = Value | float
 
@@ -172,28 +170,6 @@ class _RateWriter:
             for row, scale in zip(matrix, rows, strict=True)
         )
 
-    # ---------------------------------------------------------------- proof
-
-    def proof(self) -> list[str]:
-        """Prove that one position lies near, for all true values that the inputs may have."""
-        rec = self.rec
-        near: dict[int, Value] = {
-            k: rec.absolute(rec.input(f"v{k}")) * (4.0 * UNIT_ROUNDOFF)
-            + rec.input(f"u{k - self.n}.spread")
-            for k in range(self.n, self.table.variables)
-        }
-        proofs = []
-        for closure in self.closures:
-            used = (*closure.part.unknowns, *closure.known())
-            proofs.append(BlockProof(closure, {k: self._weight(k) for k in used}).within(near))
-            near |= dict(zip(closure.part.unknowns, proofs[-1].error_bound, strict=True))
-        holds = rec.all_of([proof.holds for proof in proofs])
-        rec.write("radius", rec.where(holds, rec.largest(p.radius for p in proofs), math.nan))
-        rec.write(
-            "unique", rec.where(holds, rec.smallest(p.uniqueness_radius for p in proofs), math.nan)
-        )
-        return ["radius", "unique"]
-
 
 def rate_program(
     table: LoopTable, parts: Sequence[BlockPart], zeros: Set[str] = frozenset()
@@ -260,23 +236,6 @@ def drawn_program(
     return writer.finish([*writer.rates(), *writer.residual(lengths)])
 
 
-def row_program(
-    table: LoopTable,
-    parts: Sequence[BlockPart],
-    lengths: Set[int],
-    zeros: Set[str] = frozenset(),
-    *,
-    certified: bool,
-) -> PlaceProgram:
-    """Rates, condition and residual; with radii of a proof if it is to be ``certified``.
-
-    Parameters are those of :func:`evidence_program`.
-    """
-    writer = _RateWriter(table, parts, zeros)
-    proof = writer.proof() if certified else []
-    return writer.finish([*writer.rates(), *writer.evidence(lengths), *proof])
-
-
 # ----------------------------------------------------------------------
 # Programs run over positions: of many designs in step, or of one design's rows.
 
@@ -327,29 +286,6 @@ def at_places(
     return found
 
 
-def along_rows(reading: PlaceProgram, coefficients: Mapping[str, Array], v: Array) -> Array:
-    """Run a program at R positions of one design.
-
-    Parameters
-    ----------
-    coefficients : Mapping[str, (1,)]
-        By register; names that the program does not use are left out.
-    v : (N, R)
-        Unknowns, then inputs.
-
-    Returns
-    -------
-    (len(reading.wanted), R)
-    """
-    ready = _Ready.of(reading, coefficients, len(v))
-    space = ready.space()
-    for name, place in zip(ready.used, ready.places, strict=True):
-        space[place] = coefficients[name][0]
-    found = np.empty((len(reading.wanted), v.shape[1]))
-    _follow(reading.program.code, space, ready.variables, v, ready.wanted, found)
-    return found
-
-
 @dataclass(frozen=True, kw_only=True, eq=False)
 class _Ready:
     """The registers that a program reads and writes, by number.
@@ -382,29 +318,6 @@ class _Ready:
     def space(self) -> Array:
         """A workspace with constants in place."""
         return self.reading.registers.filled(self.height, LANES)
-
-
-@compiled_for(
-    types.void(
-        types.Array(types.uint32, 2, "C"), types.Array(types.float64, 2, "C"),
-        types.Array(types.int64, 1, "C"), types.Array(types.float64, 2, "C"),
-        types.Array(types.int64, 1, "C"), types.Array(types.float64, 2, "C"),
-    )
-)  # fmt: skip
-def _follow(
-    code: Code, w: Array, variables: IndexArray, v: Array, wanted: IndexArray, found: Array
-) -> None:
-    """LANES rows at a time."""
-    rows = v.shape[1]
-    for base in range(0, rows, LANES):
-        lanes = min(LANES, rows - base)
-        for k in range(len(variables)):
-            for lane in range(lanes):
-                w[variables[k], lane] = v[k, base + lane]
-        run(code, w)
-        for j in range(len(wanted)):
-            for lane in range(lanes):
-                found[j, base + lane] = w[wanted[j], lane]
 
 
 @compiled

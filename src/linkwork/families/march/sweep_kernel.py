@@ -13,13 +13,13 @@ import numpy as np
 from linkwork.core.foundation.arrays import Array, BoolArray, IndexArray, allocate_aligned
 from linkwork.core.foundation.errors import InputError
 from linkwork.core.foundation.loading import share_out
+from linkwork.core.record.closure import BlockPart
 from linkwork.core.record.printing import trial_source
 from linkwork.core.record.recorder import LANES, ROLES, registers_read
 from linkwork.core.table.loop_table import LoopTable
 from linkwork.families import march as loops
 from linkwork.families.compiled.code_cache import is_cached, load_compiled
 from linkwork.families.compiled.execution import Execution
-from linkwork.families.march.closure import BlockPart
 from linkwork.families.march.dead_points import LastNodes
 from linkwork.families.march.march_programs import WEIGHTS, march_programs
 from linkwork.families.march.one_design import (

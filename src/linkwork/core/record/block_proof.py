@@ -9,11 +9,12 @@ nothing that matters.
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
+from copy import copy
 from dataclasses import dataclass
 
 from linkwork.core.foundation.rounding import PRINTED_ANGLE, PROOF_SLACK, UNIT_ROUNDOFF
+from linkwork.core.record.closure import Closure, Phase, solve_linear
 from linkwork.core.record.recorder import Recorder, Value
-from linkwork.families.march.closure import Closure, Phase, solve_linear
 
 __all__ = ["BlockProof", "BlockRadii", "Constants"]
 
@@ -74,6 +75,24 @@ class BlockProof:
         self._bound_slopes()
         self._group_terms()
 
+    def moved_to(
+        self,
+        closure: Closure,
+        scale: Mapping[int, Value],
+        moved: Callable[[Number], Value],
+    ) -> BlockProof:
+        """The proof as numbers of another recorder; ``moved``: a number of this one there."""
+        other = copy(self)
+        other.closure, other.rec, other.scale = closure, closure.rec, scale
+
+        def rows(matrix: Sequence[Sequence[Number]]) -> list[list[Value]]:
+            return [[moved(x) for x in row] for row in matrix]
+
+        (other.residual,), (other.loss,) = rows([self.residual]), rows([self.loss])
+        other.defect, other.slope, other.lines = map(rows, (self.defect, self.slope, self.lines))
+        other.phase, other.slide = rows(self.phase), rows(self.slide)
+        return other
+
     def product(self, row: Sequence[Number], column: Sequence[Number]) -> Value:
         """Σ a b."""
         rec = self.rec
@@ -89,8 +108,8 @@ class BlockProof:
             for row, size in zip(self.inverse, self.size, strict=True)
         ]
         for i, k in enumerate(self.unknowns):
-            constant = self.closure.table.printed_constant[k]
-            if constant == constant:  # an angle
+            constant = self.closure.printed_constant(k)
+            if constant is not None:
                 printed = rec.add(rec.absolute(self.closure.v[k]), constant)
                 found[i] = rec.add(found[i], rec.multiply(PRINTED_ANGLE, printed))
         return found
@@ -136,11 +155,23 @@ class BlockProof:
                 if length >= 0:
                     pairs.setdefault((length, phase), []).append((row, term))
         self.phases, self.pairs = list(groups), list(pairs)
+        self.loop_phases = len(groups)
         rows = range(self.count)
         self.phase = [
             [self._modulus(i, groups[g], sliding=True) for g in self.phases] for i in rows
         ]
+        self._add_laws()
         self.slide = [[self._modulus(i, pairs[p], sliding=False) for p in self.pairs] for i in rows]
+
+    def _add_laws(self) -> None:
+        """Every law bends along one sum of variables, as a phase does."""
+        closure = self.closure
+        first = self.count - len(closure.laws)
+        for i, law in enumerate(closure.law_rows):
+            self.phases.append(tuple((k, w) for k, _, w in law.terms if w))
+            bend = closure.number(f"f{closure.laws[i]}.bend")
+            for row, size in zip(self.phase, self.size, strict=True):
+                row.append(self.rec.multiply(size[first + i], bend))
 
     def _modulus(self, i: int, members: Sequence[tuple[int, int]], sliding: bool) -> Value:
         """|Σ (A_re - i A_im) c (s)| over the members of a phase, with the rounding of the sum."""
@@ -214,7 +245,9 @@ class _Spread:
         phases: list[Phase] = [*proof.phases, ()]  # a fixed direction does not turn
         self.own = [self._turn(phase, proof.scale, mine) for phase in phases]
         self.turned = [self._turn(phase, known, given) for phase in phases]
-        number = {phase: g for g, phase in enumerate(phases)}
+        number = {phase: g for g, phase in enumerate(phases[: proof.loop_phases])} | {
+            (): len(proof.phases)
+        }
         pairs = [(p, j, number[phase]) for p, (j, phase) in enumerate(proof.pairs)]
         self.free = [pair for pair in pairs if pair[1] in mine]
         self.held = [pair for pair in pairs if pair[1] in given]
@@ -242,7 +275,9 @@ class _Spread:
         by_slope, whole = (proof.product(row[i], spreads) for row in (proof.slope, proof.lines))
         for g, turn in enumerate(self.turned[:-1]):
             by_slope = rec.add(by_slope, 0.5 * rec.multiply(phase[g], rec.multiply(turn, turn)))
-            whole = rec.add(whole, rec.multiply(phase[g], turn))
+            # a law's phase is a second derivative, no bound of the change itself
+            change = turn if g < proof.loop_phases else 0.5 * rec.multiply(turn, turn)
+            whole = rec.add(whole, rec.multiply(phase[g], change))
         for p, j, g in self.held:
             moved = rec.multiply(slide[p], self.known[j])
             by_slope = rec.add(by_slope, rec.multiply(moved, self.turned[g]))
@@ -293,7 +328,8 @@ class _Rounding:
         """For real parts, imaginary parts, linear rows."""
         loops = [self._loop(loop) for loop in self.closure.loops]
         lines = [self._line(row) for row in self.closure.lines]
-        found = [*loops, *loops, *lines]
+        laws = [self._law(i) for i in range(len(self.closure.laws))]
+        found = [*loops, *loops, *lines, *laws]
         return [error for error, _ in found], [slope for _, slope in found]
 
     def _loop(self, loop: int) -> tuple[Number, Number]:
@@ -331,3 +367,40 @@ class _Rounding:
         spread = rec.total([self.scale[k] * abs(w) for k, w in entries])
         error = rec.multiply(UNIT_ROUNDOFF * (len(entries) + 5.0), size)
         return error, rec.multiply(UNIT_ROUNDOFF * (self.products + len(entries)), spread)
+
+    def _law(self, i: int) -> tuple[Number, Number]:
+        """As :meth:`LawRow.rounding`, and of products with the derivatives."""
+        rec, closure, terms = self.rec, self.closure, self.closure.law_rows[i].terms
+        name, count = f"f{closure.laws[i]}", len(terms) + 3.0
+
+        def size(weights: list[tuple[int, float]], constant: str) -> Value:
+            parts = [rec.multiply(abs(closure.v[k]), abs(w)) for k, w in weights]
+            return rec.total([*parts, rec.absolute(closure.number(f"{name}.{constant}"))])
+
+        moved = (count * UNIT_ROUNDOFF) * size([(k, w) for k, _, w in terms], "offset")
+        straight = size([(k, a) for k, a, _ in terms], "constant")
+        rounding, argument = f"{name}.rounding", closure.argument(i)
+        turned = rec.multiply(closure.number(f"{name}.bend"), moved)
+        steepest = rec.add(rec.absolute(closure.law(i, 1)), turned)
+        error = rec.total(
+            [
+                rec.call(rounding, argument, 0), closure.number(f"{name}.error"),
+                rec.multiply(steepest, moved), (UNIT_ROUNDOFF * count) * straight,
+                (2.0 * UNIT_ROUNDOFF) * rec.absolute(closure.law(i, 0)),
+            ]
+        )  # fmt: skip
+        steeper = rec.total(
+            [
+                rec.call(rounding, argument, 1), closure.number(f"{name}.steeper"), turned,
+                (2.0 * UNIT_ROUNDOFF) * steepest,
+            ]
+        )  # fmt: skip
+        products = UNIT_ROUNDOFF * (self.products + 2.0)
+        slopes = []
+        for k, a, w in terms:
+            own = rec.add(rec.multiply(steeper, abs(w)), 2.0 * UNIT_ROUNDOFF * abs(a))
+            gradient = rec.absolute(closure.law_slope(i, k))
+            slopes.append(
+                rec.multiply(self.scale[k], rec.add(own, rec.multiply(products, gradient)))
+            )
+        return error, rec.total(slopes)

@@ -1,7 +1,8 @@
 """The loop-closure equations of one block as recorded arithmetic: F, J, Newton's step, rates.
 
 Registers are named: ``v3`` is the fourth variable, ``c5.re`` a coefficient,
-``k0`` the constant of a linear row, ``r3`` a variable's derivative by the path.
+``k0`` the constant of a linear row, ``r3`` a variable's derivative by the path, ``f0`` the first
+law, ``f0.constant`` and ``f0.offset`` the constants of its row.
 """
 
 from __future__ import annotations
@@ -15,6 +16,7 @@ import numpy as np
 from linkwork.core.foundation.arrays import Array, IndexArray
 from linkwork.core.record.recorder import Recorder, Value
 from linkwork.core.table.loop_table import LoopTable
+from linkwork.core.table.rows import LawRow
 
 __all__ = [
     "BlockPart",
@@ -50,7 +52,7 @@ class Closure:
     Parameters
     ----------
     table : LoopTable
-        Without function rows.
+        Its function rows have to be laws.
     part : BlockPart
     recorder : Recorder
     variables : sequence of Value
@@ -73,9 +75,12 @@ class Closure:
     ) -> None:
         self.table, self.part, self.rec, self.v = table, part, recorder, variables
         self.zeros, self.shared = zeros, shared
-        loops = table.loops
+        loops, lines = table.loops, table.loops.rows + len(table.linear.constant)
         self.loops = [k for k in part.equations if k < loops.rows]
-        self.lines = [k - loops.rows for k in part.equations if k >= loops.rows]
+        self.lines = [k - loops.rows for k in part.equations if loops.rows <= k < lines]
+        self.laws = [k - lines for k in part.equations if k >= lines]
+        rows = [table.functions[k] for k in self.laws]
+        self.law_rows = [row for row in rows if isinstance(row, LawRow)]
         self.terms = {k: np.flatnonzero(loops.row == k).tolist() for k in self.loops}
         self.phases = _phases(loops.phase_term, loops.phase_variable, loops.phase_weight)
         self._phasors: dict[Phase, Pair] = {}
@@ -129,13 +134,48 @@ class Closure:
         sums = {k: [self.whole(t) for t in self.terms[k]] for k in self.loops}
         real = [rec.total([x for x, _ in sums[k]]) for k in self.loops]
         imag = [rec.total([y for _, y in sums[k]]) for k in self.loops]
-        return [*real, *imag, *[self._line(row) for row in self.lines]]
+        laws = [self._law(i) for i in range(len(self.laws))]
+        return [*real, *imag, *[self._line(row) for row in self.lines], *laws]
+
+    def number(self, name: str) -> Value | float:
+        """A number of the block; 0 where it is zero in every design."""
+        return 0.0 if name in self.zeros else self.rec.input(name)
+
+    def argument(self, i: int) -> Value:
+        """The argument Σ w v + offset of a law."""
+        parts = [self.rec.multiply(self.v[k], w) for k, _, w in self.law_rows[i].terms]
+        return self.rec.total([*parts, self.number(f"f{self.laws[i]}.offset")])
+
+    def law(self, i: int, part: int) -> Value:
+        """The value of a law, its first or its second derivative."""
+        return self.rec.call(f"f{self.laws[i]}", self.argument(i), part)
+
+    def _law(self, i: int) -> Value:
+        # eq. (4)
+        parts = [self.rec.multiply(self.v[k], a) for k, a, _ in self.law_rows[i].terms]
+        straight = self.rec.total([*parts, self.number(f"f{self.laws[i]}.constant")])
+        return self.rec.subtract(straight, self.law(i, 0))
+
+    def law_slope(self, i: int, variable: int) -> Value | float:
+        """The derivative of a law's row by a variable."""
+        rec = self.rec
+        found: Value | float = 0.0
+        for k, a, w in self.law_rows[i].terms:
+            if k == variable:  # which a row may name twice
+                own = rec.subtract(a, rec.multiply(self.law(i, 1), w)) if w else a
+                found = rec.add(found, own)
+        return found
 
     def entries(self, row: int) -> list[tuple[int, float]]:
         """Variables and weights of a linear row."""
         linear = self.table.linear
         mine = np.flatnonzero(linear.row == row)
         return [(int(linear.variable[k]), float(linear.weight[k])) for k in mine]
+
+    def printed_constant(self, variable: int) -> Value | float | None:
+        """The largest constant that an angle is printed with; ``None`` for a length."""
+        constant = self.table.printed_constant[variable]
+        return constant if constant == constant else None
 
     def _line(self, row: int) -> Value:
         # eq. (4) with f = 0
@@ -169,7 +209,7 @@ class Closure:
             float(linear.weight[(linear.row == row) & (linear.variable == variable)].sum())
             for row in self.lines
         ]
-        return [*real, *imag, *lines]
+        return [*real, *imag, *lines, *(self.law_slope(i, variable) for i in range(len(self.laws)))]
 
     def bending(self, first: Moves, second: Moves) -> list[Value | float]:
         """D²F[a, b] for two directions a and b.
@@ -184,7 +224,17 @@ class Closure:
             parts = [self._bent(term, first, second) for term in self.terms[k]]
             real.append(rec.total([x for x, _ in parts]))
             imag.append(rec.total([y for _, y in parts]))
-        return [*real, *imag, *[0.0] * len(self.lines)]
+        laws = [self._law_bent(i, first, second) for i in range(len(self.laws))]
+        return [*real, *imag, *[0.0] * len(self.lines), *laws]
+
+    def _law_bent(self, i: int, first: Moves, second: Moves) -> Value:
+        """Second derivative of a law's row along two directions."""
+        rec, terms = self.rec, self.law_rows[i].terms
+        turn, other = (
+            rec.total([rec.multiply(moves[k], w) for k, _, w in terms if k in moves])
+            for moves in (first, second)
+        )
+        return -rec.multiply(self.law(i, 2), rec.multiply(turn, other))
 
     def _bent(self, term: int, first: Moves, second: Moves) -> Pair:
         """d² of c s e^{iψ}: c e^{iψ} (i (δs ψ̇ + ṡ δψ) - s δψ ψ̇)."""
@@ -216,6 +266,8 @@ class Closure:
                     found.add(int(self.table.loops.length[term]))
         for row in self.lines:
             found.update(self.table.linear.variable[self.table.linear.row == row].tolist())
+        for law in self.law_rows:
+            found.update(law.variables)
         return sorted(found - set(self.part.unknowns))
 
 

@@ -1,0 +1,473 @@
+"""A block's equations as functions of numbers: Newton-Raphson, rates, proof of a position.
+
+The arithmetic of a block is recorded once and written as Python for its *shape*: blocks of one
+shape differ in numbers only, which are an argument of its functions. One form takes floats, for
+positions that follow each other; the other takes arrays, for many positions at once.
+
+A shape holds everything that is written into its functions, so that blocks of one shape may share
+them.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from dataclasses import dataclass
+from functools import cached_property, partial
+from typing import Any
+
+import numpy as np
+
+from linkwork.core.foundation.rounding import FAR, SMALLEST_RATIO
+from linkwork.core.foundation.statuses import Status
+from linkwork.core.record.block_proof import BlockProof
+from linkwork.core.record.closure import BlockPart, Closure, Row, solve_linear
+from linkwork.core.record.kept_code import KeptCode
+from linkwork.core.record.python_text import ARRAYS, FLOATS, Form, Statements, local_name
+from linkwork.core.record.recorder import Op, Recorder, Value
+from linkwork.core.table.loop_table import LoopTable
+from linkwork.core.table.rows import LawRow
+
+#: Unknowns of the largest block that is recorded: its elimination is written out.
+MOST_UNKNOWNS = 12
+
+Number = Value | float
+
+
+class _Numbers(Closure):
+    """The equations of a whole block; numbers that are 0 or 1 are written out."""
+
+    def __init__(self, table: LoopTable, ones: frozenset[str], zeros: frozenset[str]) -> None:
+        rec = Recorder()
+        count = table.loops.rows + len(table.linear.constant) + len(table.functions)
+        part = BlockPart(equations=tuple(range(count)), unknowns=tuple(range(table.unknowns)))
+        variables = [rec.input(f"v{k}") for k in range(table.variables)]
+        super().__init__(table, part, rec, variables, zeros)
+        self.ones = ones
+        self.n, self.known_variables = table.unknowns, range(table.unknowns, table.variables)
+
+    def number(self, name: str) -> Number:
+        return 1.0 if name in self.ones else super().number(name)
+
+    def printed_constant(self, variable: int) -> Number | None:
+        return self.number(f"p{variable}") if self.table.is_angle[variable] else None
+
+    def scale(self, variable: int) -> Value:
+        """The weight of a variable."""
+        number = self.number(f"w{variable}")
+        return number if isinstance(number, Value) else self.rec.constant(number)
+
+    @cached_property
+    def equation_scales(self) -> list[Number]:
+        """The scales that divide residuals."""
+        return [self.number(f"s{r}") for r in range(self.n)]
+
+
+def numbers_of(table: LoopTable) -> dict[str, float]:
+    """The numbers of a block by name.
+
+    ``c0.re`` a coefficient, ``k0`` a linear row's constant, ``s0`` an equation's scale, ``w0`` a
+    variable's weight, ``p0`` the constant that an angle is printed with, ``f0.bend`` one of a law.
+    """
+    found: dict[str, float] = {}
+    for term, c in enumerate(table.loops.coefficient.tolist()):
+        found[f"c{term}.re"], found[f"c{term}.im"] = c.real, c.imag
+    found |= {f"k{row}": x for row, x in enumerate(table.linear.constant.tolist())}
+    found |= {f"s{row}": x for row, x in enumerate(table.equation_scale.tolist())}
+    found |= {f"w{k}": x for k, x in enumerate(table.variable_scale.tolist())}
+    for k, x in enumerate(table.printed_constant[: table.unknowns]):
+        if x == x:
+            found[f"p{k}"] = x
+    for i, row in enumerate(table.functions):
+        assert isinstance(row, LawRow)
+        steeper = 50.0 * row.error * len(row.law.powers) / row.law.period
+        own = {
+            "constant": row.constant, "offset": row.offset, "bend": row.bend, "error": row.error,
+            "steeper": steeper,
+        }  # fmt: skip
+        found |= {f"f{i}.{name}": float(x) for name, x in own.items()}
+    return found
+
+
+def _laws(table: LoopTable, form: Form) -> dict[str, Callable[..., Any]]:
+    """The functions of a block by name."""
+    found: dict[str, Callable[..., Any]] = {}
+    for i, row in enumerate(table.functions):
+        assert isinstance(row, LawRow)
+        law = row.law
+        if form is ARRAYS:
+            found[f"f{i}"], found[f"f{i}.rounding"] = law.jet, law.rounding
+        else:
+            found[f"f{i}"] = law.jet_at
+            found[f"f{i}.rounding"] = lambda x, law=law: [
+                float(part[0]) for part in law.rounding(np.array([x]))
+            ]
+    return found
+
+
+@dataclass(frozen=True)
+class Shape:
+    """What blocks have in common whose functions are the same."""
+
+    sizes: tuple[int, ...]
+    parts: tuple[tuple[float, ...], ...]
+    zeros: frozenset[str]
+    ones: frozenset[str]
+
+    @classmethod
+    def of(cls, table: LoopTable, numbers: Mapping[str, float]) -> Shape:
+        loops, lines = table.loops, table.linear
+        parts = [
+            loops.row, loops.length, loops.phase_term, loops.phase_variable, loops.phase_weight,
+            lines.row, lines.variable, lines.weight, table.is_angle,
+        ]  # fmt: skip
+        laws = [row.terms for row in table.functions if isinstance(row, LawRow)]
+        return cls(
+            (table.unknowns, table.variables, loops.rows, len(lines.constant), len(laws)),
+            (
+                *(tuple(part.tolist()) for part in parts),
+                *(tuple(x for term in terms for x in term) for terms in laws),
+            ),
+            frozenset(name for name, x in numbers.items() if x == 0.0),
+            frozenset(name for name, x in numbers.items() if x == 1.0 and name[0] in "sw"),
+        )
+
+
+class ShapeWriter:
+    """Writes the functions of a shape in one form; see :class:`BlockFunctions`."""
+
+    def __init__(self, table: LoopTable, shape: Shape, form: Form) -> None:
+        self._table, self._shape, self._form = table, shape, form
+        self.n, self.variables = table.unknowns, [f"v{k}" for k in range(table.variables)]
+        numbers = numbers_of(table)
+        self.names = [
+            *(name for name in numbers if name not in shape.zeros | shape.ones),
+            *(f"f{i}{kind}" for i in range(len(table.functions)) for kind in ("", ".rounding")),
+        ]
+
+    def _closure(self) -> _Numbers:
+        return _Numbers(self._table, self._shape.ones, self._shape.zeros)
+
+    # ------------------------------------------------------------- Newton-Raphson
+
+    def _correction(self) -> tuple[Recorder, list[int], list[int]]:
+        """Newton's step: the largest residual, all of them; the largest correction and turn, all
+        corrections.
+        """
+        closure = self._closure()
+        rec, unknowns = closure.rec, closure.part.unknowns
+        f = closure.residual()
+        error = rec.largest(
+            rec.divide(rec.absolute(x), s) for x, s in zip(f, closure.equation_scales, strict=True)
+        )
+        change = solve_linear(rec, closure.jacobian(unknowns), [f]).columns[0]
+        size = rec.largest(
+            rec.divide(rec.absolute(x), closure.scale(k))
+            for x, k in zip(change, unknowns, strict=True)
+        )
+        angles = [x for x, k in zip(change, unknowns, strict=True) if self._table.is_angle[k]]
+        turn = rec.largest(rec.absolute(x) for x in angles) if angles else rec.constant(0.0)
+        return rec, [x.number for x in (error, *f)], [x.number for x in (size, turn, *change)]
+
+    def solve(self) -> str:
+        """Newton-Raphson, of floats."""
+        rec, first, second = self._correction()
+        fixed = _unmoved(rec, {f"v{k}" for k in range(self.n)}, [*first, *second])
+        text = Statements(rec, self._form, [fixed, first, second])
+        before, evidence, correct = (text.stage(k) for k in range(3))
+        error, (size, turn, *change) = text.text(first[0]), map(text.text, second)
+        unknowns = self.variables[: self.n]
+        loop = [
+            *evidence,
+            f"error = {error}",
+            f"if not error < inf or (last > {FAR!r} and count):",
+            f"    status = {Status.DIVERGED.code}",
+            "    break",
+            "if error <= equation_tolerance or last <= solution_tolerance:  # eq. (8)",
+            "    break",
+            "if count == most:",
+            f"    status = {Status.STEP_LIMIT.code}",
+            "    break",
+            *correct,
+            f"size = {size}",
+            "if not size < inf:",
+            f"    status = {Status.SINGULAR_JACOBIAN.code}",
+            "    break",
+            f"if {turn} > largest_turn:",
+            "    share = largest_turn / " + turn,
+            *(f"    {v} -= share * {x}" for v, x in zip(unknowns, change, strict=True)),
+            "    size *= share  # eq. (7)",
+            "else:",
+            *(f"    {v} -= {x}  # eq. (6)" for v, x in zip(unknowns, change, strict=True)),
+            "if count:",
+            f"    if size > {SMALLEST_RATIO!r}:",
+            "        ratio = size / last",
+            "        contraction = ratio if ratio > contraction else contraction",
+            "else:",
+            "    first = size",
+            "last = size",
+            "count += 1",
+        ]
+        body = [
+            self._unpack,
+            f"status, count = {Status.CONVERGED.code}, 0",
+            "error = last = inf",
+            "first = contraction = 0.0",
+            "try:",
+            *(f"    {line}" for line in before),
+            "    while True:",
+            *(f"        {line}" for line in loop),
+            "except ZeroDivisionError:",
+            f"    status = {Status.SINGULAR_JACOBIAN.code}",
+            "except (ValueError, OverflowError):",
+            f"    status, error = {Status.DIVERGED.code}, nan",
+            f"return status, count, error, first, contraction, {_listed(unknowns)}",
+        ]
+        limits = ["most", "equation_tolerance", "solution_tolerance", "largest_turn"]
+        return self._function("solve", [*self.variables, *limits], body)
+
+    def correct(self) -> str:
+        """One step of Newton-Raphson."""
+        rec, first, second = self._correction()
+        error, (size, turn, *change) = first[0], second
+        return self._plain("correct", (rec, [error, size, turn, *change]), self.variables)
+
+    # ------------------------------------------------------------- rates
+
+    def _record_rates(self) -> tuple[Recorder, list[int]]:
+        """Rates of the unknowns, then condition and determinant."""
+        closure = self._closure()
+        rec, unknowns = closure.rec, closure.part.unknowns
+        known = list(closure.known_variables)
+        first: dict[int, Number] = {k: rec.input(f"r{k}") for k in known}
+        second: dict[int, Number] = {k: rec.input(f"b{k}") for k in known}
+        matrix, drives = closure.jacobian(unknowns), closure.jacobian(known)
+        inverse, determinant = _inverse(rec, matrix)
+
+        def product(row: Row, column: Row) -> Value:
+            return rec.total([rec.multiply(a, b) for a, b in zip(row, column, strict=True)])
+
+        side = [product(row, [first[k] for k in known]) for row in drives]
+        first |= {k: -product(inverse[k], side) for k in unknowns}  # eq. (11)
+        driven = [product(row, [second[k] for k in known]) for row in drives]
+        bends = [rec.add(a, b) for a, b in zip(closure.bending(first, first), driven, strict=True)]
+        second |= {k: -product(inverse[k], bends) for k in unknowns}  # eq. (12)
+        weights = [closure.scale(k) for k in unknowns]
+        condition = rec.multiply(  # eq. (14)
+            _norm(rec, matrix, weights, closure.equation_scales),
+            _norm(rec, inverse, closure.equation_scales, weights),
+        )
+        rates = [rec.add(which[k], 0.0) for which in (first, second) for k in unknowns]
+        return rec, [x.number for x in (*rates, condition, determinant)]
+
+    def balanced(self) -> str:
+        """The condition with all columns of J equally long."""
+        closure = self._closure()
+        rec, n, unknowns = closure.rec, self.n, closure.part.unknowns
+        matrix, scales = closure.jacobian(unknowns), closure.equation_scales
+        units = [[float(i == j) for i in range(n)] for j in range(n)]
+        columns = solve_linear(rec, matrix, units).columns
+        inverse = [[columns[j][i] for j in range(n)] for i in range(n)]
+        longest = [
+            rec.largest(
+                rec.divide(rec.absolute(row[k]), s) for row, s in zip(matrix, scales, strict=True)
+            )
+            for k in range(n)
+        ]
+        shares = [rec.divide(1.0, x) for x in longest]
+        found = rec.multiply(
+            _norm(rec, matrix, shares, scales), _norm(rec, inverse, scales, shares)
+        )
+        return self._plain("balanced", (rec, [found.number]), self.variables)
+
+    def rates(self) -> str:
+        """Rates, condition and determinant."""
+        known = range(self.n, len(self.variables))
+        moved = [f"{kind}{k}" for kind in "rb" for k in known]
+        return self._plain("rates", self._record_rates(), [*self.variables, *moved])
+
+    # ------------------------------------------------------------- proof
+
+    @cached_property
+    def _proof(self) -> tuple[Recorder, list[int], _Numbers, BlockProof]:
+        """What a proof needs of a position, whatever the errors of the known variables.
+
+        And the proof as numbers of another recorder, in which these are inputs ``q0``, ``q1``, ….
+        """
+        closure = self._closure()
+        proof = BlockProof(closure, {k: closure.scale(k) for k in range(len(self.variables))})
+        later = self._closure()
+        places: dict[int, int] = {}
+
+        def moved(x: Number) -> Value:
+            known = closure.rec.known_value(x)
+            if known is not None:
+                return later.rec.constant(known)
+            assert isinstance(x, Value)
+            return later.rec.input(f"q{places.setdefault(x.number, len(places))}")
+
+        after = proof.moved_to(later, {k: later.scale(k) for k in proof.scale}, moved)
+        return closure.rec, list(places), later, after
+
+    def place(self) -> str:
+        """What proofs need of a position."""
+        rec, needed, _, _ = self._proof
+        return self._plain("place", (rec, needed), self.variables)
+
+    def within(self) -> str:
+        """The proof for known variables within some distance."""
+        _, needed, closure, proof = self._proof
+        known = closure.known_variables
+        found = proof.within({k: closure.rec.input(f"e{k}") for k in known})
+        values = [
+            found.holds, found.radius, found.uniqueness_radius, *found.error_bound,
+            *found.isolation_radius,
+        ]  # fmt: skip
+        arguments = [*(f"q{i}" for i in range(len(needed))), *(f"e{k}" for k in known)]
+        return self._plain("within", (closure.rec, [x.number for x in values]), arguments)
+
+    # ------------------------------------------------------------- writing
+
+    @property
+    def _unpack(self) -> str:
+        return f"{_listed(map(local_name, self.names))} = numbers" if self.names else "pass"
+
+    def _plain(
+        self, name: str, recorded: tuple[Recorder, list[int]], arguments: Sequence[str]
+    ) -> str:
+        """A function that gives some recorded values."""
+        recorder, values = recorded
+        text = Statements(recorder, self._form, [values])
+        lines = text.stage(0)
+        found = _listed(text.text(k) for k in values)
+        return self._function(name, arguments, [self._unpack, *lines, f"return {found}"])
+
+    def _function(self, name: str, arguments: Sequence[str], body: Sequence[str]) -> str:
+        statements = "\n    ".join(body)
+        return f"def {name}(numbers, {', '.join(arguments)}):\n    {statements}\n"
+
+
+def _listed(names: Iterable[str]) -> str:
+    """Names as a tuple."""
+    return "".join(f"{name}, " for name in names).removesuffix(" ") or "()"
+
+
+def _inverse(rec: Recorder, matrix: Sequence[Row]) -> tuple[list[list[Value]], Value]:
+    """The inverse of a matrix and its determinant."""
+    n = len(matrix)
+    units = [[float(i == j) for i in range(n)] for j in range(n)]
+    solution = solve_linear(rec, matrix, units)
+    return [list(row) for row in zip(*solution.columns, strict=True)], solution.determinant
+
+
+def _norm(rec: Recorder, matrix: Sequence[Row], columns: Row, rows: Row) -> Value:
+    """The largest sum of moduli of a row, columns multiplied and rows divided by weights."""
+    return rec.largest(
+        rec.divide(
+            rec.total(
+                [rec.multiply(rec.absolute(x), w) for x, w in zip(row, columns, strict=True)]
+            ),
+            scale,
+        )
+        for row, scale in zip(matrix, rows, strict=True)
+    )
+
+
+def _unmoved(rec: Recorder, moving: set[str], values: Sequence[int]) -> list[int]:
+    """The computed numbers that no moving input changes, but others use."""
+    changed: list[bool] = []
+    for op, sources, payload in zip(rec.ops, rec.arguments, rec.payload, strict=True):
+        changed.append(payload in moving if op is Op.INPUT else any(changed[a] for a in sources))
+    plain = (Op.INPUT, Op.CONSTANT)
+    found: dict[int, None] = {}
+    seen, stack = set[int](), list(values)
+    while stack:
+        k = stack.pop()
+        if k in seen:
+            continue
+        seen.add(k)
+        if not changed[k]:
+            if rec.ops[k] not in plain:
+                found[k] = None
+            continue
+        stack += rec.arguments[rec.arguments[k][0]] if rec.ops[k] is Op.COS else rec.arguments[k]
+    return sorted(found)
+
+
+class ShapeFunctions:
+    """The functions of a shape in one form, each written when it is first needed."""
+
+    def __init__(self, table: LoopTable, shape: Shape, form: Form) -> None:
+        self._writer, self._form = ShapeWriter(table, shape, form), form
+        self._code = KeptCode(f"{form.name} {shape}")
+        self.names = self._writer.names
+
+    def __getattr__(self, name: str) -> Callable[..., Any]:
+        if name.startswith("_"):  # copies ask for these
+            raise AttributeError(name)
+        code = self._code.get(name, lambda: getattr(self._writer, name)())
+        function = self._form.function(code, name)
+        setattr(self, name, function)
+        return function
+
+
+_FORMS = FLOATS, ARRAYS
+#: The functions of every shape that this process has met, by form.
+_FUNCTIONS: dict[Shape, tuple[ShapeFunctions, ...]] = {}
+
+
+class BlockFunctions:
+    """The functions of one block in one form; see :class:`BlockRecord`."""
+
+    def __init__(self, shared: ShapeFunctions, numbers: tuple[Any, ...]) -> None:
+        self._shared, self._numbers = shared, numbers
+
+    def __getattr__(self, name: str) -> Callable[..., Any]:
+        if name.startswith("_"):
+            raise AttributeError(name)
+        function = partial(getattr(self._shared, name), self._numbers)
+        setattr(self, name, function)
+        return function
+
+
+class BlockRecord:
+    """The functions of a block, :attr:`of_floats` and :attr:`of_arrays` (B,).
+
+    All take the block's variables first, unknowns before known ones.
+
+    ``solve(*v, most, equation_tolerance, solution_tolerance, largest_turn)``, of floats
+        status, iterations, residual, first correction, contraction, then the unknowns
+    ``correct(*v)``
+        residual, size of the correction, its largest turn, then the corrections
+    ``rates(*v, *first, *second)``, of the known variables
+        first and second derivatives of the unknowns, condition, determinant
+    ``balanced(*v)``
+        condition with all columns of the Jacobian equally long
+    ``place(*v)``
+        what proofs need of a position
+    ``within(*place, *errors)``, of the known variables
+        whether a position is proved, radius, radius of uniqueness, then of each unknown how far
+        it may be off, then how far other solutions are
+    """
+
+    def __init__(self, table: LoopTable) -> None:
+        self.table = table
+        numbers = numbers_of(table)
+        shape = Shape.of(table, numbers)
+        if shape not in _FUNCTIONS:
+            _FUNCTIONS[shape] = tuple(ShapeFunctions(table, shape, form) for form in _FORMS)
+        self.of_floats, self.of_arrays = (
+            BlockFunctions(shared, tuple(own[name] for name in shared.names))
+            for shared, own in zip(
+                _FUNCTIONS[shape], (numbers | _laws(table, form) for form in _FORMS), strict=True
+            )
+        )
+
+    def __reduce__(self) -> tuple[type[BlockRecord], tuple[LoopTable]]:
+        return BlockRecord, (self.table,)
+
+
+def record_of(table: LoopTable) -> BlockRecord | None:
+    """The functions of a block; ``None`` with rows of any formula, or with many unknowns."""
+    if not table.has_curvature_bound or not 0 < table.unknowns <= MOST_UNKNOWNS:
+        return None
+    return BlockRecord(table)
