@@ -213,7 +213,7 @@ class BlockSolver:
 
     def _rates_singly(self, v: Array, input_rate: Array, input_bend: Array | float) -> SolvedRows:
         """:meth:`rates` for a few rows."""
-        first, second = np.zeros(v.shape), np.zeros(v.shape)
+        first, second = np.zeros_like(v), np.zeros_like(v)
         first[:, self.unknowns :], second[:, self.unknowns :] = input_rate, input_bend
         rows = v.tolist(), first.tolist(), second.tolist()
         found = [self.rates_row(a, b, c) for a, b, c in zip(rows[0], rows[1], rows[2], strict=True)]

@@ -303,10 +303,11 @@ def _zeros(leg: ReducedLeg) -> Iterator[tuple[float, float]]:
             yield float(looks[k]), float(looks[k])
     changes = (force[:-1] > 0.0) != (force[1:] > 0.0)
     for k in np.flatnonzero(changes & ~flat[:-1] & ~flat[1:]).tolist():
-        low, high = float(looks[k]), float(looks[k + 1])
+        low, high, side = float(looks[k]), float(looks[k + 1]), bool(force[k] > 0.0)
         for _ in range(_EQUILIBRIA_ROUNDS):
             inside = np.linspace(low, high, 17)
             over = _force(leg, inside) > 0.0
+            over[[0, -1]] = side, not side  # near zero a sign may change with its last bit
             cut = int(np.flatnonzero(over[1:] != over[:-1])[0])
             low, high = float(inside[cut]), float(inside[cut + 1])
             if high - low <= 4.0 * np.spacing(abs(low)):
