@@ -43,6 +43,11 @@ class InputPath:
         """``rate`` as a list."""
         return list(map(float, self.rate))
 
+    @cached_property
+    def origins(self) -> list[float]:
+        """``origin`` as a list."""
+        return list(map(float, self.origin))
+
     def at(self, t: float | Array) -> Array:
         """u(t), (p,) or (B, p)."""
         inputs: Array = self.origin + np.multiply.outer(np.asarray(t), self.rate)

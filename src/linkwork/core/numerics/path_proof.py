@@ -4,14 +4,16 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
+from itertools import pairwise
 
 import numpy as np
 
 from linkwork.core.foundation.arrays import Array, BoolArray, CountArray, IndexArray
 from linkwork.core.foundation.rounding import UNIT_ROUNDOFF
 from linkwork.core.foundation.statuses import CONVERGED
-from linkwork.core.numerics.block_solver import BlockSolver
+from linkwork.core.numerics.block_solver import FEW, BlockSolver
 from linkwork.core.numerics.branch_tracking import InputPath, quintic
+from linkwork.core.numerics.few_steps import StepProver, radii_of
 from linkwork.core.numerics.position_proof import (
     Place,
     Proof,
@@ -395,6 +397,10 @@ def prove_path(
     position solved in between. Many open steps are worked on together.
     """
     count = len(points.t)
+    if not exact and solver.goes_singly(count):
+        few = _prove_few(solver, path, points)
+        if few is not None:
+            return few
     prover = Prover(solver, path, exact, fitted=exact or not solver.is_recorded)
     allowance = Allowance(_MOST + _MOST_EACH * count if most is None else most)
     begins = list(range(0, max(count - 1, 1), _PIECE))
@@ -424,6 +430,34 @@ def prove_path(
         connected=np.concatenate([piece.connected for piece in pieces]),
         pieces=np.concatenate([piece.pieces for piece in pieces]),
         given_up=np.concatenate([piece.given_up for piece in pieces]),
+    )
+
+
+def _prove_few(solver: BlockSolver, path: InputPath, points: SolvedRows) -> ProvenPath | None:
+    """:func:`prove_path` on floats; ``None`` if a position or a step is not proved so."""
+    prover = StepProver(solver, path)
+    found = prover.places(points, range(len(points.t)))
+    places = [place for place in found if place is not None]
+    if len(places) < len(found):
+        return None
+    pieces = []
+    for one, other in pairwise(places):
+        before = prover.inserted
+        if not prover.joins(one, other):
+            return None
+        pieces.append(1 + prover.inserted - before)
+    existence, unique, errors = radii_of(places)
+    steps = len(pieces)
+    return ProvenPath(
+        position=Proof(
+            holds=np.ones(len(places), dtype=bool),
+            existence_radius=existence,
+            uniqueness_radius=unique,
+            error_bound=errors,
+        ),
+        connected=np.ones(steps, dtype=bool),
+        pieces=np.array(pieces, dtype=np.int64),
+        given_up=np.zeros(steps, dtype=bool),
     )
 
 
@@ -522,6 +556,20 @@ def _piece(
     if not len(open_):
         return ProvenPath(position=position, connected=connected, pieces=pieces, given_up=nothing)
     apart &= own
+    if not prover.fitted and len(open_) <= FEW:  # the others are found on floats
+        singly = StepProver(solver, prover.path)
+        for k in open_[~apart[open_]]:
+            before = singly.inserted
+            one, other = singly.places(points, (k, k + 1))
+            if one is not None and other is not None:
+                connected[k] = singly.joins(one, other)
+                pieces[k] += singly.inserted - before
+        left_over = ~connected[open_]
+        open_, parts = open_[left_over], parts[left_over]
+        if not len(open_):
+            return ProvenPath(
+                position=position, connected=connected, pieces=pieces, given_up=nothing
+            )
     quick = replace(prover, halvings=min(prover.halvings, _QUICK))
     work = Halving(prover if prover.fitted else quick, strands, position.holds)
     work.lose(np.flatnonzero(apart))
