@@ -10,6 +10,7 @@ import pytest
 import linkwork as lw
 from linkwork.core.foundation.arrays import Array
 from linkwork.core.foundation.statuses import Status
+from linkwork.core.motion.following import Drive
 from linkwork.core.numerics.block_solver import FEW, BlockSolver
 from linkwork.core.numerics.newton import NewtonOptions, newton
 from linkwork.core.numerics.position_proof import expansions, prove, recorded_places
@@ -128,3 +129,16 @@ def test_blocks_of_one_shape_have_the_same_functions(form: object) -> None:
     several = [sources for sources in written.values() if len(sources) > 1]
     assert len(several) > 10
     assert all(one == other for one, other in several)
+
+
+def test_blocks_that_know_no_variable_are_solved_as_by_the_array_form() -> None:
+    model = read_example("three-rpr").model
+    leads, v = Drive.of_circuits(model).leads, model.equations.start
+    leaders = [led for k in range(len(v)) if (led := leads.with_parameter(k)) is not None]
+    alone = [b for led in leaders for b in led.solver.blocks if len(b.variables) == 1]
+    assert alone
+    for led in leaders:
+        here, rate = v[led.order][None, :], np.ones(1)
+        own, other = led.solver.rates(here, rate), plain(led.solver).rates(here, rate)
+        np.testing.assert_array_equal(own.orientation, other.orientation)
+        np.testing.assert_allclose(own.condition, other.condition, rtol=1e-9)

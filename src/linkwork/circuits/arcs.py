@@ -36,10 +36,12 @@ from linkwork.core.numerics.local_parametrization import (
     same_position,
     whole_turns,
 )
+from linkwork.core.numerics.newton import newton
 from linkwork.core.numerics.path_proof import prove_path
 from linkwork.core.numerics.position_proof import rounding_of_inputs
 from linkwork.core.numerics.system import SolvedRows
 
+_IMPROVED = 1e-4  # weighted: how far a crossing's other blocks are moved at most
 _STEPS = 24  # of a turn, besides those that the march takes in between
 
 
@@ -51,7 +53,7 @@ def full_turn(drive: Drive, start: Array) -> TracedCurve | None:
     """
     leads, p = drive.leads, drive.leads.parameter
     own = leads.with_parameter(p)
-    if not leads.is_angle[p] or own is None or not own.provable:
+    if not leads.is_angle[p] or own is None or not own.provable or not drive.solver.unknowns:
         return None
     here = own.node(start)
     t = here.t + np.linspace(0.0, FULL_TURN, _STEPS + 1)
@@ -381,6 +383,7 @@ class Explorer:
         return walk, self._register(found, -side * led.whole(node.first))
 
     def _register(self, found: Crossing, came_from: Array) -> int:
+        found = replace(found, v=_improved(self.walks.drive, found.v))
         number = next(
             (k for k, one in enumerate(self.crossings) if coincide(self.leads, one.v, found.v)),
             len(self.crossings),
@@ -394,6 +397,23 @@ class Explorer:
         k = int(np.abs(along).argmax())
         self._covered.add((number, k, math.copysign(1.0, along[k])))
         return number
+
+
+def _improved(drive: Drive, v: Array) -> Array:
+    """A crossing (N,) with the blocks that do not cross there solved to rounding.
+
+    Where another block is near its own change point, its unknowns are known less well.
+    """
+    found = v.copy()
+    for block in drive.solver.blocks:
+        here, n = found[None, block.variables], len(block.unknowns)
+        done = newton(block.system, here)
+        moved = np.abs((done.v - here)[0, :n] / block.system.variable_scale[:n]).max(initial=0.0)
+        if done.status[0] == Status.CONVERGED.code and moved < _IMPROVED:
+            slope = block.system.jacobian(done.v)[0, :, :n] * block.system.variable_scale[:n]
+            if np.linalg.cond(slope / block.system.equation_scale[:, None]) < REGULAR_CONDITION:
+                found[block.unknowns] = done.v[0, :n]
+    return found
 
 
 def _with_proofs(arc: Arc, walks: Walks) -> Arc:

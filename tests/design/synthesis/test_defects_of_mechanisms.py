@@ -177,7 +177,7 @@ def test_a_position_at_a_change_point_is_not_decided_by_the_last_bit() -> None:
     circuits = mechanism.circuits(certify=False)
     inputs, places = _rows_near(circuits, "lower_bar", "E", 1.578, 1.4298474194765434, 36.34)
     task = lw.Task.path([(place.real, place.imag) for place in places])
-    for more, decided in ((1e-10, True), (1e-7, True), (-1e-10, False), (-1e-7, False)):
+    for more, decided in ((1e-10, True), (1e-6, True), (-1e-10, False), (-1e-6, False)):
         values = [inputs[0], inputs[1] + more, inputs[2]]
         found = [defect.message for defect in task.defects_of(mechanism, values, point="E")]
         assert found == [] if decided else ["not proved: position 2 is at a change point"]

@@ -181,8 +181,9 @@ class BlockSolver:
             assert record is not None
             places, n = block.places, len(block.unknowns)
             here, known = [v[k] for k in places], places[n:]
+            rates = record.of_floats.rates
             try:
-                *found, own, determinant = record.of_floats.rates(
+                *found, own, determinant = rates(
                     *here, *[first[k] for k in known], *[second[k] for k in known]
                 )
             except (ArithmeticError, ValueError):  # a singular Jacobian
@@ -424,8 +425,9 @@ def _recorded_rates(
 
 def _balanced(record: Recorded, v: list[float]) -> float:
     """The condition with equally long columns at one position."""
+    balanced = record.of_floats.balanced
     try:
-        (found,) = record.of_floats.balanced(*v)
+        (found,) = balanced(*v)
     except (ArithmeticError, ValueError):
         return math.inf
     return float(found) if found == found else math.inf

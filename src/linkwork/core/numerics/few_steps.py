@@ -48,7 +48,12 @@ class StepProver:
         self.solver, self.path, self.inserted = solver, path, 0
         self.options = unlimited(solver.options, 12, solver.options.solution_tolerance)
         self.blocks = [
-            (block.record.of_floats, block.places, len(block.unknowns))
+            (
+                block.record.of_floats.place,
+                block.record.of_floats.within,
+                block.places,
+                len(block.unknowns),
+            )
             for block in solver.blocks
             if block.record is not None
         ]
@@ -69,10 +74,10 @@ class StepProver:
         errors = [0.0] * self.solver.unknowns + input_radius
         place = ProvedPlace(t, v, first, second, errors, [], [], [])
         try:
-            for functions, places, n in self.blocks:
-                data = functions.place(*[v[k] for k in places])
+            for prepare, within, places, n in self.blocks:
+                data = prepare(*[v[k] for k in places])
                 known = [errors[k] for k in places[n:]]
-                holds, radius, unique, *own = functions.within(*data, *known)
+                holds, radius, unique, *own = within(*data, *known)
                 if not holds:
                     return None
                 for k, error in zip(places, own[:n], strict=False):
@@ -110,9 +115,9 @@ class StepProver:
         """Whether there is one solution for all inputs so ``far`` in a box that ``moved`` fits."""
         errors = [0.0] * self.solver.unknowns + far
         try:
-            for (functions, places, n), data in zip(self.blocks, place.data, strict=True):
+            for (_, within, places, n), data in zip(self.blocks, place.data, strict=True):
                 known = [errors[k] for k in places[n:]]
-                holds, _, _, *own = functions.within(*data, *known)
+                holds, _, _, *own = within(*data, *known)
                 if not holds:
                     return False
                 for k, error, isolation in zip(places, own, own[n:], strict=False):

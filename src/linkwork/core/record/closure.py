@@ -186,6 +186,8 @@ class Closure:
     def jacobian(self, variables: Sequence[int]) -> list[list[Value | float]]:
         """dF/dv by some variables."""
         columns = [self._column(k) for k in variables]
+        if not columns:
+            return [[] for _ in self.residual()]
         return [list(row) for row in zip(*columns, strict=True)]
 
     def _column(self, variable: int) -> list[Value | float]:
