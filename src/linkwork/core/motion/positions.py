@@ -299,7 +299,7 @@ def prove_rows(
     found = np.flatnonzero(rows.status == Status.CONVERGED.code)
     if not len(found):
         return unproved(rows, Certification.NO_POSITION), True
-    nodes = _nodes_around(track, rows.t[found])
+    nodes = nodes_around(track, rows.t[found])
     points, place = _path_points(solver, [track.nodes[k] for k in nodes], rows, asked, found)
     anchor = int(place[nodes.index(track.start)])
     proof = prove_path(solver, path, points, anchor=anchor, progress=progress)
@@ -331,7 +331,7 @@ def unproved(rows: SolvedRows, why: Certification) -> SolvedRows:
     return rows.with_columns(certification=code, radius=unknown, uniqueness_radius=unknown)
 
 
-def _nodes_around(track: Track, t: Array) -> list[int]:
+def nodes_around(track: Track, t: Array) -> list[int]:
     """The numbers of the nodes between the start and all rows, and of those that can be proved."""
     begin = track.nodes[track.start].t
     low, high = min(begin, float(t.min())), max(begin, float(t.max()))

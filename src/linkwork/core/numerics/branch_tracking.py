@@ -54,16 +54,21 @@ class InputPath:
         return inputs
 
 
-def quintic(s: Array, h: Array, left: SolvedRows, right: SolvedRows) -> Array:
-    """The polynomials through both ends of steps of length h (B or 1, 1), at the fractions s."""
-    v0, v1 = left.v, right.v
+def quintic_coefficients(h: Array, left: SolvedRows, right: SolvedRows) -> tuple[Array, ...]:
+    """Of the polynomials in fractions of steps of length h (B or 1, 1) through both ends."""
     a1, b1 = left.first * h, right.first * h
     a2, b2 = left.second * h * h, right.second * h * h
-    rise = v1 - v0
+    rise = right.v - left.v
     c3 = 10 * rise - 6 * a1 - 4 * b1 - 1.5 * a2 + 0.5 * b2  # eq. (20)
     c4 = -15 * rise + 8 * a1 + 7 * b1 + 1.5 * a2 - b2
     c5 = 6 * rise - 3 * a1 - 3 * b1 - 0.5 * a2 + 0.5 * b2
-    value: Array = v0 + s * (a1 + s * (0.5 * a2 + s * (c3 + s * (c4 + s * c5))))  # eq. (20)
+    return left.v, a1, 0.5 * a2, c3, c4, c5
+
+
+def quintic(s: Array, h: Array, left: SolvedRows, right: SolvedRows) -> Array:
+    """The polynomials through both ends of steps of length h (B or 1, 1), at the fractions s."""
+    c0, c1, c2, c3, c4, c5 = quintic_coefficients(h, left, right)
+    value: Array = c0 + s * (c1 + s * (c2 + s * (c3 + s * (c4 + s * c5))))  # eq. (20)
     return value
 
 
@@ -145,6 +150,16 @@ class Node:
     nearness: float
     iterations: int = 0
 
+    @cached_property
+    def rows(self) -> tuple[list[float], list[float], list[float], list[int]]:
+        """``v``, ``first``, ``second`` and ``orientation`` as lists."""
+        return (
+            self.v.tolist(),
+            self.first.tolist(),
+            self.second.tolist(),
+            self.orientation.tolist(),
+        )
+
 
 @dataclass(frozen=True, kw_only=True)
 class End:
@@ -189,20 +204,18 @@ Watch = Callable[[Node, Node], bool]
 
 def node_at(solver: BlockSolver, path: InputPath, t: float, v: Array, iterations: int = 0) -> Node:
     """The node of a converged position."""
+    return _node_at_row(solver, path, t, v.tolist(), iterations)
+
+
+def _node_at_row(
+    solver: BlockSolver, path: InputPath, t: float, row: list[float], iterations: int
+) -> Node:
     if solver.is_recorded:
         unknown = [0.0] * solver.unknowns
         first, second = unknown + path.rates, unknown + [0.0] * len(path.rates)
-        condition, nearness, signs = solver.rates_row(v.tolist(), first, second)
-        return Node(
-            t=t,
-            v=v,
-            first=np.array(first),
-            second=np.array(second),
-            orientation=np.array(signs, dtype=np.int8),
-            condition=condition,
-            nearness=nearness,
-            iterations=iterations,
-        )
+        condition, nearness, signs = solver.rates_row(row, first, second)
+        return _node_of_rows(t, (row, first, second, signs), condition, nearness, iterations)
+    v = np.array(row)
     rates = solver.rates(v[None, :], path.rate)
     return Node(
         t=t,
@@ -216,14 +229,33 @@ def node_at(solver: BlockSolver, path: InputPath, t: float, v: Array, iterations
     )
 
 
+def _node_of_rows(
+    t: float,
+    rows: tuple[list[float], list[float], list[float], list[int]],
+    condition: float,
+    nearness: float,
+    iterations: int,
+) -> Node:
+    v, first, second, signs = rows
+    node = Node(
+        t=t,
+        v=np.array(v),
+        first=np.array(first),
+        second=np.array(second),
+        orientation=np.array(signs, dtype=np.int8),
+        condition=condition,
+        nearness=nearness,
+        iterations=iterations,
+    )
+    vars(node)["rows"] = rows
+    return node
+
+
 def rows_of_nodes(nodes: Sequence[Node]) -> SolvedRows:
     """Positions and derivatives of nodes."""
-    return SolvedRows(
-        t=np.array([node.t for node in nodes]),
-        v=np.stack([node.v for node in nodes]),
-        first=np.stack([node.first for node in nodes]),
-        second=np.stack([node.second for node in nodes]),
-    )
+    parts = np.array([node.rows[:3] for node in nodes])
+    v, first, second = np.ascontiguousarray(parts.transpose(1, 0, 2))
+    return SolvedRows(t=np.array([node.t for node in nodes]), v=v, first=first, second=second)
 
 
 def predict(here: Node, t: float) -> Array:
@@ -270,6 +302,7 @@ class _Trial:
         self.solver, self.path, self.options = solver, path, options
         # a prediction that needs more steps was too far: halving costs less
         self.quick = unlimited(solver.options, 6, _NODE_TOLERANCE)
+        self.weights: list[float] = solver.variable_scale.tolist()
         self.before: Node | None = None
 
     def room(self, here: Node, sign: float) -> float:
@@ -301,12 +334,16 @@ class _Trial:
 
     def _dead_point_ahead(self, here: Node, sign: float) -> float:
         """How far a step may go towards a dead point."""
-        speed = np.abs(here.first) / self.solver.variable_scale
-        k = int(np.argmax(speed))
-        # rates that shrink lead away from a dead point
-        if speed[k] * self.path.size < _FAST or sign * here.first[k] * here.second[k] <= 0.0:
+        _, rates, bends, _ = here.rows
+        speed = [abs(x) / w for x, w in zip(rates, self.weights, strict=True)]
+        fastest = max(speed)
+        if fastest * self.path.size < _FAST:
             return math.inf
-        return _APPROACH * abs(float(here.first[k] / (2.0 * here.second[k])))  # eq. (24)
+        k = speed.index(fastest)
+        # rates that shrink lead away from a dead point
+        if not sign * rates[k] * bends[k] > 0.0:
+            return math.inf
+        return _APPROACH * abs(rates[k] / (2.0 * bends[k]))  # eq. (24)
 
     def attempt(self, here: Node, t: float) -> Attempt[Node]:
         """A step; where it is refused, how far a shorter one may go."""
@@ -324,8 +361,13 @@ class _Trial:
     def _try(self, here: Node, t: float) -> Attempt[Node]:
         """Predict, correct and judge."""
         solver, path, opt, h = self.solver, self.path, self.options, t - here.t
-        guess = predict(here, t)
-        guess[solver.unknowns :] = path.origin + t * path.rate
+        row, rates, bends, signs = here.rows
+        q, n = 0.5 * h * h, solver.unknowns
+        guess = [
+            x + h * a + q * b  # eq. (17)
+            for x, a, b in zip(row[:n], rates, bends, strict=False)
+        ]
+        guess += [o + t * a for o, a in zip(path.origins, path.rates, strict=True)]
         v, found = self._solve(guess)
         correction = found.first_step
         # eq. (22): Taylor's error of second order grows like h³
@@ -337,14 +379,20 @@ class _Trial:
             return Attempt(None, factor if too_far else None)
         if correction > opt.largest_correction:
             return Attempt(None, factor)
-        node = node_at(solver, path, t, v, found.iterations)
+        node = _node_at_row(solver, path, t, v, found.iterations)
         # det J changes its sign at a dead point and at a change point: another branch
-        if not (node.orientation == here.orientation).all():
+        if node.rows[3] != signs:
             return Attempt(None)
         if not node.nearness <= opt.largest_condition:
             return Attempt(None)
-        drift = (node.first - here.first - h * here.second) / solver.variable_scale  # eq. (23)
-        turn = float(np.abs(drift * h).max())
+        turn = max(  # eq. (23)
+            [
+                abs((after - before - h * bend) * h) / w
+                for after, before, bend, w in zip(
+                    node.rows[1], rates, bends, self.weights, strict=True
+                )
+            ]
+        )
         if not turn <= opt.rate_error:
             return Attempt(None)
         # eq. (23): by Taylor's theorem about three times the correction; on another branch nearby,
@@ -354,18 +402,17 @@ class _Trial:
         factor = min(factor, by_error(turn, 0.5 * opt.rate_error, 3))
         # so that rounding leaves it on the branch
         if opt.sharp and node.nearness > REGULAR_CONDITION:
-            node = node_at(solver, path, t, solver.sharpen(v[None, :])[0], found.iterations)
+            node = node_at(solver, path, t, solver.sharpen(node.v[None, :])[0], found.iterations)
         return Attempt(node, factor)
 
-    def _solve(self, guess: Array) -> tuple[Array, SingleSolution]:
+    def _solve(self, guess: list[float]) -> tuple[list[float], SingleSolution]:
         """Newton-Raphson from a guess (N,): where it ended, and how."""
         solver = self.solver
         if solver.is_recorded:
-            row = guess.tolist()
-            found = solver.solve_row(row, self.quick)
-            return np.array(row), found
-        done = solver.solve(guess[None, :], self.quick)
-        return done.v[0], SingleSolution(
+            found = solver.solve_row(guess, self.quick)
+            return guess, found
+        done = solver.solve(np.array([guess]), self.quick)
+        return done.v[0].tolist(), SingleSolution(
             status=int(done.status[0]),
             iterations=int(done.iterations[0]),
             first_step=float(done.first_step[0]),
@@ -390,7 +437,7 @@ def rows_on_track(solver: BlockSolver, path: InputPath, track: Track, t: Array) 
     Starts from quintic interpolation between the track's nodes. A row that ends elsewhere than
     predicted, or with another sign of det J, is followed again from its node step by step.
     """
-    guess, left = interpolate(track, t)
+    guess, left = interpolate(rows_of_nodes(track.nodes), t)
     guess[:, solver.unknowns :] = path.at(t)
     found = solver.solve(guess, unlimited(solver.options, 12, solver.options.solution_tolerance))
     v, status = found.v.copy(), found.status.copy()
@@ -398,7 +445,7 @@ def rows_on_track(solver: BlockSolver, path: InputPath, track: Track, t: Array) 
     weights = solver.variable_scale
     # a row so far from its interpolation may lie on another branch: it is followed step by step
     moved = np.abs((v - guess) / weights).max(axis=1)
-    expected = np.stack([track.nodes[k].orientation for k in left])
+    expected = np.array([node.rows[3] for node in track.nodes], dtype=np.int8)[left]
     doubtful = (status != CONVERGED) | ~(moved <= 0.1) | (rates.orientation != expected).any(axis=1)
     residual, iterations = found.residual.copy(), found.iterations.copy()
     for row in np.flatnonzero(doubtful):
@@ -421,17 +468,18 @@ def _nearest(track: Track, left: int, t: float) -> Node:
     return min(track.nodes[left], track.nodes[right], key=lambda node: abs(node.t - t))
 
 
-def interpolate(track: Track, t: Array) -> tuple[Array, IndexArray]:
+def interpolate(nodes: SolvedRows, t: Array) -> tuple[Array, IndexArray]:
     """Quintic Hermite values at t (B, N) and the index of the node at the left of each."""
-    nodes = rows_of_nodes(track.nodes)
     times = nodes.t
     if len(nodes) == 1:
         return np.repeat(nodes.v, len(t), axis=0), np.zeros(len(t), dtype=np.intp)
-    # the last node belongs to the last step
-    left = np.clip(np.searchsorted(times, t, side="right") - 1, 0, len(nodes) - 2)
-    h = (times[left + 1] - times[left])[:, None]
-    s = (t[:, None] - times[left][:, None]) / h
-    return quintic(s, h, nodes.take(left), nodes.take(left + 1)), left
+    left = np.searchsorted(times[1:-1], t, side="right")  # the last node belongs to the last step
+    h = times[1:] - times[:-1]
+    begin, end = nodes.take(slice(None, -1)), nodes.take(slice(1, None))
+    coefficients = np.stack(quintic_coefficients(h[:, None], begin, end), axis=2)[left]
+    powers = ((t - times[left]) / h[left])[:, None] ** np.arange(6.0)
+    value: Array = np.einsum("bnk,bk->bn", coefficients, powers)
+    return value, left
 
 
 # ----------------------------------------------------------------------

@@ -233,9 +233,8 @@ class ShapeWriter:
 
     # ------------------------------------------------------------- rates
 
-    def _record_rates(self) -> tuple[Recorder, list[int]]:
+    def _rate_values(self, closure: _Numbers) -> list[int]:
         """Rates of the unknowns, then condition and determinant."""
-        closure = self._closure()
         rec, unknowns = closure.rec, closure.part.unknowns
         known = list(closure.known_variables)
         first: dict[int, Number] = {k: rec.input(f"r{k}") for k in known}
@@ -257,7 +256,7 @@ class ShapeWriter:
             _norm(rec, inverse, closure.equation_scales, weights),
         )
         rates = [rec.add(which[k], 0.0) for which in (first, second) for k in unknowns]
-        return rec, [x.number for x in (*rates, condition, determinant)]
+        return [x.number for x in (*rates, condition, determinant)]
 
     def balanced(self) -> str:
         """The condition with all columns of J equally long."""
@@ -281,9 +280,9 @@ class ShapeWriter:
 
     def rates(self) -> str:
         """Rates, condition and determinant."""
-        known = range(self.n, len(self.variables))
-        moved = [f"{kind}{k}" for kind in "rb" for k in known]
-        return self._plain("rates", self._record_rates(), [*self.variables, *moved])
+        closure = self._closure()
+        recorded = closure.rec, self._rate_values(closure)
+        return self._plain("rates", recorded, [*self.variables, *self._of_known("rb")])
 
     # ------------------------------------------------------------- proof
 
@@ -316,14 +315,21 @@ class ShapeWriter:
     def within(self) -> str:
         """The proof for known variables within some distance."""
         _, needed, closure, proof = self._proof
-        known = closure.known_variables
-        found = proof.within({k: closure.rec.input(f"e{k}") for k in known})
-        values = [
-            found.holds, found.radius, found.uniqueness_radius, *found.error_bound,
-            *found.isolation_radius,
-        ]  # fmt: skip
-        arguments = [*(f"q{i}" for i in range(len(needed))), *(f"e{k}" for k in known)]
-        return self._plain("within", (closure.rec, [x.number for x in values]), arguments)
+        arguments = [*(f"q{i}" for i in range(len(needed))), *self._of_known("e")]
+        return self._plain("within", (closure.rec, _radii(closure, proof, "e")), arguments)
+
+    def rates_and_proofs(self) -> str:
+        """Rates, then proofs for known variables within two distances, all in one."""
+        closure = self._closure()
+        values = self._rate_values(closure)
+        proof = BlockProof(closure, {k: closure.scale(k) for k in range(len(self.variables))})
+        values += _radii(closure, proof, "e") + _radii(closure, proof, "g")
+        arguments = [*self.variables, *self._of_known("rbeg")]
+        return self._plain("rates_and_proofs", (closure.rec, values), arguments)
+
+    def _of_known(self, kinds: str) -> list[str]:
+        """Arguments for each of the known variables."""
+        return [f"{kind}{k}" for kind in kinds for k in range(self.n, len(self.variables))]
 
     # ------------------------------------------------------------- writing
 
@@ -344,6 +350,16 @@ class ShapeWriter:
     def _function(self, name: str, arguments: Sequence[str], body: Sequence[str]) -> str:
         statements = "\n    ".join(body)
         return f"def {name}(numbers, {', '.join(arguments)}):\n    {statements}\n"
+
+
+def _radii(closure: _Numbers, proof: BlockProof, kind: str) -> list[int]:
+    """A proof for known variables within distances: whether it holds, and its radii."""
+    found = proof.within({k: closure.rec.input(f"{kind}{k}") for k in closure.known_variables})
+    values = [
+        found.holds, found.radius, found.uniqueness_radius, *found.error_bound,
+        *found.isolation_radius,
+    ]  # fmt: skip
+    return [x.number for x in values]
 
 
 def _listed(names: Iterable[str]) -> str:
@@ -447,6 +463,8 @@ class BlockRecord:
     ``within(*place, *errors)``, of the known variables
         whether a position is proved, radius, radius of uniqueness, then of each unknown how far
         it may be off, then how far other solutions are
+    ``rates_and_proofs(*v, *first, *second, *errors, *farther)``
+        what ``rates`` gives, then what ``within`` gives for both distances
     """
 
     def __init__(self, table: LoopTable) -> None:
