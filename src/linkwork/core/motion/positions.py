@@ -186,6 +186,14 @@ class Named:
     points: Mapping[str, tuple[Series, Series]]
     outputs: Mapping[str, Series]
 
+    def find(self, name: str) -> Series:
+        """A variable or output by its name, or a coordinate of a point."""
+        for table in (self.unknowns, self.links, self.sliders, self.outputs):
+            if name in table:
+                return table[name]
+        point, _, axis = name.rpartition(".")
+        return self.points[point][axis == "y"]
+
 
 class RowValues(QuantityValues):
     """Quantities of B rows; rows that were not found are NaN.
@@ -457,15 +465,19 @@ def input_rate(model: Model) -> Array:
 
 def position_of(model: Model, named: Named, row: int, evidence: Evidence, q: Array) -> Position:
     """One row of named quantities as a position; ``q`` (n,) in internal units."""
-    everything: dict[str, Series] = {
-        **named.unknowns,
-        **named.links,
-        **named.sliders,
-        **named.outputs,
-        **{s.quantity.name: s for pair in named.points.values() for s in pair},
-    }
-    first = {name: float(s.first[row]) for name, s in everything.items()}
-    second = {name: float(s.second[row]) for name, s in everything.items()}
+    axes = [f"{point}.{axis}" for point in named.points for axis in "xy"]
+    names = [*named.unknowns, *named.links, *named.sliders, *named.outputs, *axes]
+
+    def of_row(number: Callable[[Series], Any]) -> ComputedDict[str, Any]:
+        """A number of every quantity, computed when it is asked for."""
+        return ComputedDict(names, lambda name: number(named.find(name)))
+
+    def place(point: str) -> tuple[float, float]:
+        x, y = named.points[point]
+        return float(x.value[row]), float(y.value[row])
+
+    first = of_row(lambda series: float(series.first[row]))
+    second = of_row(lambda series: float(series.second[row]))
     speed = model.speed
     return Position(
         mechanism=model.description.name,
@@ -480,16 +492,13 @@ def position_of(model: Model, named: Named, row: int, evidence: Evidence, q: Arr
         unknowns=_values(named.unknowns, row),
         links=_values(named.links, row),
         sliders=_values(named.sliders, row),
-        points={
-            name: (float(x.value[row]), float(y.value[row]))
-            for name, (x, y) in named.points.items()
-        },
+        points=ComputedDict(named.points, place),
         outputs=_values(named.outputs, row),
-        value_units={name: model.units.of(s.quantity.kind) for name, s in everything.items()},
+        value_units=of_row(lambda series: model.units.of(series.quantity.kind)),
         first=first,
         second=second,
-        velocity={} if speed is None else {n: d * speed for n, d in first.items()},
-        acceleration={} if speed is None else {n: d * (speed * speed) for n, d in second.items()},
+        velocity={} if speed is None else of_row(lambda s: float(s.first[row]) * speed),
+        acceleration={} if speed is None else of_row(lambda s: float(s.second[row]) * speed**2),
         speed=speed,
         residual=evidence.residual,
         iterations=evidence.iterations,
@@ -510,5 +519,5 @@ def _misfits(model: Model, q: Array) -> dict[str, float]:
     return largest_misfits(model.equations, q[None, :])
 
 
-def _values(table: Mapping[str, Series], row: int) -> dict[str, float]:
-    return {name: float(series.value[row]) for name, series in table.items()}
+def _values(table: Mapping[str, Series], row: int) -> Mapping[str, float]:
+    return ComputedDict(table, lambda name: float(table[name].value[row]))

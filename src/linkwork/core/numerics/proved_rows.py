@@ -106,11 +106,11 @@ def proved_rows(
 
 def _without_last(points: _Points) -> _Points:
     """All points but the last, which is the first of the next piece."""
-    return _Points(*(x[..., :-1] for x in points[:-1]), points.connected)
+    return _Points._make(x[..., :-1] for x in points)
 
 
 def _together(pieces: Sequence[_Points]) -> _Points:
-    return _Points(*(np.concatenate(x, axis=-1) for x in zip(*pieces, strict=True)))
+    return _Points._make(np.concatenate(x, axis=-1) for x in zip(*pieces, strict=True))
 
 
 def _piece(solver: BlockSolver, path: InputPath, start: Array, radius: Array) -> _Points | None:
