@@ -18,6 +18,7 @@ from linkwork.core.numerics.branch_tracking import (
     Track,
     TrackOptions,
     interpolate,
+    rows_of_nodes,
     rows_on_track,
 )
 from linkwork.core.numerics.change_point import Crossing
@@ -240,7 +241,7 @@ def _samples(leads: Parametrizations, leg: Leg, fine: int, solved: bool) -> tupl
         good = rows.status == Status.CONVERGED.code
         v, ratio = led.whole(rows.v[good]), _ratio(leads, led.whole(rows.first[good]))
         return t[good], _Samples(v=v, ratio=ratio, leader=led)
-    v, ratio = led.whole(interpolate(track, t)[0]), np.zeros(len(t))
+    v, ratio = led.whole(interpolate(rows_of_nodes(track.nodes), t)[0]), np.zeros(len(t))
     v[::fine], ratio[::fine] = leg.v, _ratio(leads, leg.first)
     return t, _Samples(v=v, ratio=ratio, leader=led)
 
