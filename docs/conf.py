@@ -13,7 +13,7 @@ extensions = [
     "sphinx.ext.napoleon",
     "scripts.docsite.extension",
 ]
-exclude_patterns = ["images/**"]
+exclude_patterns = ["contributing/**", "images/**"]
 
 myst_enable_extensions = ["colon_fence", "deflist", "dollarmath", "html_image"]
 myst_heading_anchors = 4
