@@ -13,7 +13,7 @@ extensions = [
     "sphinx.ext.napoleon",
     "scripts.docsite.extension",
 ]
-exclude_patterns = ["images/**"]
+exclude_patterns = ["contributing/**", "images/**"]
 
 myst_enable_extensions = ["colon_fence", "deflist", "dollarmath", "html_image"]
 myst_heading_anchors = 4
@@ -48,6 +48,7 @@ html_theme_options = {
     "navbar_align": "left",
     "header_links_before_dropdown": 7,
     "show_toc_level": 2,
+    "navigation_depth": 1,  # the side bar lists the index of the decisions, not every record
     "footer_start": ["copyright"],
     "footer_end": [],
     "pygments_light_style": "a11y-high-contrast-light",

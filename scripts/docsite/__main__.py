@@ -29,7 +29,6 @@ _GENERATED = {
 }
 #: Links of pages to files and folders that are not pages of the site.
 _OUTSIDE = {
-    "](decisions/)": "](decisions/0001-loops-follow-the-blocks.md)",
     "[benchmarks/peers/requirements.txt](../benchmarks/peers/requirements.txt)": (
         "`benchmarks/peers/requirements.txt`"
     ),
