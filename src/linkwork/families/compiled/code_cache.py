@@ -32,6 +32,11 @@ _COMPILED = (
 _PAYS = 10_000_000  # positions: as long as they take another loop does it take to compile one
 
 
+def has_compiler() -> bool:
+    """Whether Numba is installed: the extra ``fast``."""
+    return importlib.util.find_spec("numba") is not None
+
+
 def is_loaded(loop: str) -> bool:
     """Whether this process has a loop in use."""
     return f"linkwork.families.{_package(loop)}.{loop}" in sys.modules
