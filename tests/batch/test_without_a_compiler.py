@@ -94,3 +94,18 @@ def test_nothing_but_a_compiler_is_missing(tmp_path: Path) -> None:
     )
     assert done.stderr == ""
     assert done.stdout.split() == ["True", "2", "True", "None"]
+
+
+def test_a_compiler_is_offered_once_where_it_pays(
+    monkeypatch: pytest.MonkeyPatch, caplog: pytest.LogCaptureFixture
+) -> None:
+    monkeypatch.setattr(design_sweep, "has_compiler", lambda: False)
+    monkeypatch.setattr(design_sweep, "_OFFERED", [])
+    swept("four-bar")
+    assert not caplog.records
+    monkeypatch.setattr(design_sweep, "_MANY", 1000)
+    for _ in range(2):
+        swept("four-bar")
+    (offer,) = caplog.records
+    assert offer.getMessage().startswith("1,083 positions took ")
+    assert 'pip install "linkwork[fast]"' in offer.getMessage()

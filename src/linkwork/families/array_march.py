@@ -14,7 +14,8 @@ import numpy as np
 from linkwork.core.foundation.arrays import Array, BoolArray
 from linkwork.core.foundation.statuses import Certification, Status
 from linkwork.core.numerics.proved_rows import Part, Points, parts_of, solve_points
-from linkwork.core.record.block_record import ARRAYS, functions_of, numbers_of
+from linkwork.core.record.block_record import functions_of, numbers_of
+from linkwork.core.record.python_text import ARRAYS
 from linkwork.core.table.loop_table import LoopTable
 from linkwork.families.building import Designs
 from linkwork.families.design_sweep import DesignRows, TablePath

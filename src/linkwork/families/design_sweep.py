@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+import logging
 from collections.abc import Iterable
 from dataclasses import dataclass, field, replace
 from functools import cached_property
+from time import perf_counter
 from typing import Any
 
 import numpy as np
@@ -367,6 +369,11 @@ class TablePath:
         np.copyto(found.certification, proof.code, where=reached)
 
 
+_MANY = 100_000  # positions for which compiled code is worth its installation
+_FASTER = 5.0  # times, in one thread
+_OFFERED: list[bool] = []  # once in a process
+
+
 def _fill(
     path: TablePath,
     designs: Designs,
@@ -379,8 +386,23 @@ def _fill(
     if has_compiler():
         return path.fill(designs, found, certify, threads, execution)
     found.clear(np.ones(found.status.shape, dtype=bool), certify)
+    begin = perf_counter()
     done: BoolArray = wings.use("families.array_march").fill(path, designs, found, certify)
+    if found.status.size >= _MANY and not _OFFERED:
+        _OFFERED.append(True)
+        _offer_compiler(found.status.size, perf_counter() - begin)
     return done
+
+
+def _offer_compiler(positions: int, seconds: float) -> None:
+    """Say how long compiled code would take."""
+    logging.getLogger("linkwork").warning(
+        "%s positions took %.1f s; with the extra fast they take about %.1f s: "
+        'pip install "linkwork[fast]", or ".[fast]" in a clone',
+        f"{positions:,}",
+        seconds,
+        seconds / _FASTER,
+    )
 
 
 def design_rows(
