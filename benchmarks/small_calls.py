@@ -11,6 +11,7 @@ from dataclasses import replace
 from functools import partial
 
 import numpy as np
+from linkwork.families.by_kernels import kernel_rows
 
 import linkwork as lw
 from benchmarks.timing import bar, interleaved
@@ -20,7 +21,6 @@ from linkwork.core.motion.solving import first_position
 from linkwork.core.numerics.branch_tracking import Node, node_at
 from linkwork.core.numerics.newton import NewtonOptions
 from linkwork.families import Family, compile_kernels
-from linkwork.families.by_kernels import kernel_rows
 
 __all__ = ["measure"]
 

@@ -15,7 +15,7 @@ from benchmarks.peers.work import Work
 from linkwork.core.foundation.arrays import Array
 
 if TYPE_CHECKING:  # compiled code is loaded by those who use it
-    from linkwork.families.design_sweep import FamilyMarch
+    from linkwork.families.family_march import FamilyMarch
     from linkwork.families.march.one_design import RowsOfOne
 
 __all__ = ["LinkworkKernel", "rows_of_one"]

@@ -332,7 +332,7 @@ def test_starts_beside_the_path_are_led_to_it_together(
         motion = family.sweep(certify=certify)
         assert not motion.rows.alone.any()
         assert_agrees(family, motion, certify)
-    monkeypatch.setattr("linkwork.families.design_sweep._CHUNK", 1)  # one design after the other
+    monkeypatch.setattr("linkwork.families.family_march._CHUNK", 1)  # one design after the other
     again = family.sweep(certify=False)
     np.testing.assert_array_equal(again.rows.v, motion.rows.v)
 

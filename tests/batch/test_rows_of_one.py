@@ -11,7 +11,8 @@ from linkwork.core.mechanism.linkage import Linkage
 from linkwork.core.record.recorder import LANES
 from linkwork.families import Family
 from linkwork.families.compiled.execution import Execution
-from linkwork.families.design_sweep import FamilyMarch, TablePath
+from linkwork.families.design_sweep import TablePath
+from linkwork.families.family_march import FamilyMarch
 from linkwork.families.march.rowwise import _is_smooth, prove_rows
 from linkwork.families.march.step_trial import MarchResult
 from tests.described import described_as

@@ -9,7 +9,8 @@ import pytest
 import linkwork as lw
 from linkwork.core.motion.model import Model, leading_input
 from linkwork.core.record.closure import BlockPart
-from linkwork.families.march.rate_programs import at_places, evidence_program, rate_program
+from linkwork.families.march.places import at_places
+from linkwork.families.march.rate_programs import evidence_program, rate_program
 
 Array = npt.NDArray[np.float64]
 ROWS = 5

@@ -2,12 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+import logging
+from collections.abc import Iterable
 from dataclasses import dataclass, field, replace
 from functools import cached_property
+from time import perf_counter
+from typing import Any
 
 import numpy as np
 
+from linkwork import wings
 from linkwork.core.foundation.arrays import (
     AnyArray,
     Array,
@@ -23,7 +27,7 @@ from linkwork.core.foundation.rounding import UNIT_ROUNDOFF
 from linkwork.core.foundation.statuses import Certification, Status
 from linkwork.core.foundation.units import FULL_TURN
 from linkwork.core.mechanism.inputs import Input
-from linkwork.core.motion.following import Drive, turns_freely
+from linkwork.core.motion.following import Drive
 from linkwork.core.motion.limits import BranchEnd
 from linkwork.core.motion.model import Model, leading_input
 from linkwork.core.motion.rows_between import RowsBetween, motion_of_rows
@@ -32,11 +36,9 @@ from linkwork.core.numerics.system import SolvedRows
 from linkwork.core.results.limit import LimitKind
 from linkwork.core.results.motion import Motion
 from linkwork.families.building import Designs, stay_open
+from linkwork.families.compiled.code_cache import has_compiler
 from linkwork.families.compiled.execution import Execution
-from linkwork.families.march.dead_points import dead_points
-from linkwork.families.march.step_trial import MarchResult
-from linkwork.families.march.sweep_kernel import Steps, SweepKernel
-from linkwork.families.topologies import are_served, kernel_of
+from linkwork.families.topologies import are_served
 
 
 def loop_coefficients(designs: Designs) -> dict[str, Array]:
@@ -59,70 +61,6 @@ def zero_coefficients(designs: Designs, coefficients: dict[str, Array]) -> set[s
     fine = np.flatnonzero(designs.problem == 0)
     which = slice(None) if len(fine) == len(designs) else fine
     return {name for name, values in coefficients.items() if not values[which].any()}
-
-
-# ----------------------------------------------------------------------
-# Move designs whose start is off the table's path of inputs to that path.
-
-
-_CHUNK = 1 << 22  # distances in memory at a time
-
-
-def lead_to_rows(
-    designs: Designs,
-    rows: Array,
-    kernel: SweepKernel,
-    coefficients: Mapping[str, Array],
-    which: IndexArray,
-    threads: int,
-) -> tuple[Array, IndexArray]:
-    """Move designs from their starts to the nearest row, along a straight line of inputs.
-
-    Parameters
-    ----------
-    rows : (R, p)
-        Two or more inputs at the rows of the table.
-    coefficients : Mapping[str, (D,)]
-        By register.
-    which : (M,)
-        The designs.
-
-    Returns
-    -------
-    v : (n, M)
-        Unknowns at the rows, NaN if a row is not reached; proved with the kernel's steps.
-    nearest : (M,)
-        The rows.
-    """
-    n, count = kernel.table.unknowns, len(which)
-    own = designs.start[which, n:]
-    nearest = _nearest(designs, rows, which)
-    rate = rows[nearest] - own
-    given = {name: values[which] for name, values in coefficients.items()}
-    for j in range(own.shape[1]):
-        given[f"u{j}.origin"], given[f"u{j}.rate"] = own[:, j].copy(), rate[:, j].copy()
-        given[f"u{j}.spread"] = 4.0 * UNIT_ROUNDOFF * (np.abs(own[:, j]) + np.abs(rate[:, j]))
-    v, radius = np.empty((n, 2, count)), np.empty((2 if kernel.certified else 0, count))
-    found = kernel.result(v, radius)
-    # each design has its own path, from its start (0) to its row (1)
-    ends = np.array([0.0, 1.0])
-    kernel.run(given, designs.start[which, :n].T, np.zeros(count), ends, Steps(), found, threads)
-    return np.where(found.reached[1], v[:, 1], np.nan), nearest
-
-
-def _nearest(designs: Designs, rows: Array, which: IndexArray) -> IndexArray:
-    """The row with the nearest inputs, lengths relative to the longest link, (M,)."""
-    n = designs.base.compiled.solver.unknowns
-    turns = designs.base.compiled.table.is_angle[n:]
-    found = np.empty(len(which), dtype=np.intp)
-    # all distances at once would not fit into memory for a million designs
-    step = max(1, _CHUNK // rows.size)
-    for begin in range(0, len(which), step):
-        mine = which[begin : begin + step]
-        weights = np.where(turns, 1.0, designs.length_scale[mine, None])
-        away = np.abs(rows - designs.start[mine, None, n:]) / weights[:, None, :]
-        found[begin : begin + step] = away.max(axis=2).argmin(axis=1)
-    return found
 
 
 # ----------------------------------------------------------------------
@@ -352,44 +290,10 @@ def message_single(designs: Designs, k: int) -> str:
 
 
 # ----------------------------------------------------------------------
-# Solve designs over a table of inputs by compiled kernels, the remaining ones one by one.
+# Solve designs over a table of inputs: by compiled kernels, the remaining ones one by one.
 
 
-_ON_PATH = 1e-12
-_FINEST = 1e-8  # relative step for rows directly before a dead point
-
-
-def design_rows(
-    designs: Designs, *, certify: bool, threads: int = 1, execution: Execution | None = None
-) -> DesignRows:
-    """Solve every design over the rows of the mechanism's table, on the branch of its start.
-
-    The compiled march handles loop and linear equations; designs that it cannot complete (dead
-    points, change points, no position at the start) and mechanisms with other equations are swept
-    one at a time, so every row has the same status as in a single sweep.
-    """
-    model = designs.base
-    left = designs.problem == 0
-    path = TablePath.of(model)
-    found = DesignRows.blank(
-        model.compiled.solver.unknowns,
-        len(model.rows),
-        len(designs),
-        certify,
-        falling=path is not None and path.falling,
-    )
-    if path is None:
-        found.clear(np.ones(found.status.shape, dtype=bool), certify)
-    else:
-        left &= ~path.fill(designs, found, certify, threads, execution or Execution())
-        # most of those without a start need not be built to be tried
-        if left.any():
-            open_ones = left & stay_open(designs)
-            leave_open(designs, np.flatnonzero(open_ones), found)
-            left &= ~open_ones
-    for k in np.flatnonzero(left):
-        sweep_single(designs, int(k), found, certify)
-    return found.freeze()
+_ON_PATH = 1e-12  # relative: a start so near to the table's line lies on it
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -443,15 +347,14 @@ class TablePath:
         march.note_limits(found, whole)
         return whole
 
-    def march(
-        self, designs: Designs, certify: bool, threads: int, execution: Execution
-    ) -> FamilyMarch:
+    def march(self, designs: Designs, certify: bool, threads: int, execution: Execution) -> Any:
         """The march of designs that start on the path or can be moved to it."""
         inputs = designs.start[:, self.model.compiled.solver.unknowns :]
         start = inputs[:, self.lead]
         away = np.abs(inputs - (self.origin + self.rate * start[:, None]))
         served: BoolArray = np.all(away <= _ON_PATH * np.maximum(1.0, np.abs(inputs)), axis=1)
-        return FamilyMarch(self, designs, served, certify, threads, execution)
+        march = wings.use("families.family_march").FamilyMarch
+        return march(self, designs, served, certify, threads, execution)
 
     def _note(self, found: DesignRows, reached: BoolArray, whole: BoolArray, certify: bool) -> None:
         """Set the status of reached rows, and of the other rows of finished designs."""
@@ -466,191 +369,70 @@ class TablePath:
         np.copyto(found.certification, proof.code, where=reached)
 
 
-class FamilyMarch:
-    """The compiled march of a family, with the treatment of dead points."""
-
-    def __init__(
-        self,
-        path: TablePath,
-        designs: Designs,
-        served: BoolArray,
-        certify: bool,
-        threads: int,
-        execution: Execution,
-    ) -> None:
-        self.path, self.certify, self.threads = path, certify, threads
-        compiled, model = path.model.compiled, path.model
-        n = compiled.solver.unknowns
-        fine = designs.problem == 0
-        self.coefficients = _coefficients(path, designs)
-        self.zeros = zero_coefficients(designs, self.coefficients)
-        self.kernel = kernel_of(model, frozenset(self.zeros), certify, execution.device)
-        self.kernel.choose_execution(execution)
-        # NaN: the march leaves such designs out
-        self.guess = np.where(served & fine, designs.start[:, :n].T, np.nan)  # otherwise not found
-        self.start = designs.start[:, n + path.lead].copy()
-        self._enter(designs, np.flatnonzero(fine & ~served))
-        self.free = turns_freely(model)
-        #: Rows (W,) reached by designs (W,) after whole turns, and the number of turns.
-        self.wound: list[tuple[IndexArray, IndexArray, int]] = []
-        self.limits = np.repeat([[-np.inf], [np.inf]], len(designs), axis=1)
-
-    def _enter(self, designs: Designs, beside: IndexArray) -> None:
-        """Move designs that start off the path to a row on it."""
-        if not len(beside):
-            return
-        t = self.path.model.rows[:, self.path.lead]
-        rows = self.path.origin + np.outer(t, self.path.rate)
-        v, nearest = lead_to_rows(
-            designs, rows, self.kernel, self.coefficients, beside, self.threads
-        )
-        self.guess[:, beside], self.start[beside] = v, t[nearest]
-
-    def note_limits(self, found: DesignRows, which: BoolArray) -> None:
-        """Store the limits of some designs; those located by the march are dead points."""
-        np.copyto(found.limits, self.limits, where=which)
-        dead = LIMIT_KINDS.index(LimitKind.DEAD_POINT)
-        np.copyto(found.limit_kinds, np.int8(dead), where=which & np.isfinite(self.limits))
-
-    def through(self, t: Array, v: Array, radius: Array) -> tuple[BoolArray, BoolArray]:
-        """March through increasing values of t.
-
-        Returns
-        -------
-        done, reached : (D,), (R, D)
-            Designs that are finished: each row is reached or lies beyond a dead point.
-        """
-        begun, found = self._march(t, v, radius, slice(None))
-        reached = found.reached
-        if reached.all():  # the usual case, quicker to check for all designs together
-            return np.ones(len(begun), dtype=bool), reached
-        done: BoolArray = np.logical_and.reduce(reached, axis=0)
-        stopped = np.flatnonzero(begun & ~done)
-        # with several inputs no dead point is proved here: such designs are swept one at a time
-        if not len(stopped) or len(self.path.rate) > 1:
-            return done, reached
-        limits = np.repeat([[-np.inf], [np.inf]], len(stopped), axis=1)
-        self._limit(limits, found, stopped, stopped)
-        # a row beyond a dead point may lie on the branch a turn away
-        around = (-1, 1) if self.free else ()
-        for turns in around:
-            self._wind(t, turns, v, radius, reached, stopped, limits)
-        for turns in (0, *around):  # rows directly before dead points
-            self._wind(t, turns, v, radius, reached, stopped, limits, _FINEST)
-        self.limits[:, stopped] = limits
-        settled = self._find_complete(t, reached[:, stopped], limits)
-        done[stopped[settled]] = True
-        return done, reached
-
-    def _march(
-        self,
-        t: Array,
-        v: Array,
-        radius: Array,
-        where: IndexArray | slice,
-        apart: float = 0.0,
-        smallest: float | None = None,
-    ) -> tuple[BoolArray, MarchResult]:
-        """Rows at values of t, which may differ by ``apart`` from the requested ones, and a mask of
-        the designs that began.
-
-        ``smallest``: minimum step, if not the default.
-        """
-        steps = Steps() if smallest is None else Steps(smallest=smallest)
-        found = self.kernel.result(v, radius)
-        coefficients = {name: values[where] for name, values in self.coefficients.items()}
-        # a new array: the family's own must not change
-        coefficients["u0.spread"] = coefficients["u0.spread"] + apart
-        begun = self.kernel.run(
-            coefficients,
-            self.guess[:, where],
-            self.start[where],
-            t,
-            steps.times(self.path.size),
-            found,
-            self.threads,
-        )
-        return begun, found
-
-    def _limit(
-        self, limits: Array, found: MarchResult, there: IndexArray, mine: IndexArray
-    ) -> None:
-        """Store the range of t of designs stopped in a march; ``there`` (S,): their indices in the
-        march, ``mine`` (S,): in the family.
-
-        ``limits`` (2, S): infinite if the march was not stopped; NaN if it was stopped without a
-        located dead point.
-        """
-        for way in range(2):
-            ended = np.flatnonzero(~np.isnan(found.end[way, there]) & np.isinf(limits[way]))
-            if not len(ended):
-                continue
-            folds = dead_points(
-                self.path.model.compiled.table,
-                self.zeros,
-                {name: values[mine[ended]] for name, values in self.coefficients.items()},
-                self.kernel.last_nodes(found, way, there[ended]),
-                way,
-            )
-            limits[way, ended] = np.where(folds.found, folds.t, np.nan)
-
-    def _wind(
-        self,
-        t: Array,
-        turns: int,
-        v: Array,
-        radius: Array,
-        reached: BoolArray,
-        stopped: IndexArray,
-        limits: Array,
-        smallest: float | None = None,
-    ) -> None:
-        """Fill the rows reached after whole ``turns``, with steps down to ``smallest``."""
-        moved = t + turns * FULL_TURN
-        inside = (moved[:, None] >= limits[0]) & (moved[:, None] <= limits[1])
-        those = np.flatnonzero((~reached[:, stopped] & inside).any(axis=0))
-        if not len(those):
-            return
-        mine = stopped[those]
-        own, radii = np.empty((len(v), len(t), len(mine))), np.empty((len(radius), len(mine)))
-        # 2π and the sum are rounded
-        apart = (
-            4.0 * UNIT_ROUNDOFF * (float(np.abs(t).max()) + abs(turns) * FULL_TURN)
-            if turns
-            else 0.0
-        )
-        _, further = self._march(moved, own, radii, mine, apart, smallest)
-        row, column = np.nonzero(further.reached & ~reached[:, mine])
-        v[:, row, mine[column]] = own[:, row, column]
-        if self.certify:
-            radius[row, mine[column]] = radii[row, column]
-        reached[row, mine[column]] = True
-        if turns:
-            self.wound.append((row, mine[column], turns))
-        known = limits[:, those]
-        self._limit(known, further, np.arange(len(mine)), mine)
-        limits[:, those] = known
-
-    def _find_complete(self, t: Array, reached: BoolArray, limits: Array) -> BoolArray:
-        """Designs without missing rows within their limits, (S,)."""
-        low, high = limits
-        settled: BoolArray = np.logical_not(np.isnan(limits).any(axis=0))
-        # turns that can bring a row of the table between two limits
-        most = int((t[-1] - t[0]) / FULL_TURN) + 2 if self.free else 0
-        for turns in range(-most, most + 1):
-            moved = t[:, None] + turns * FULL_TURN
-            settled &= ~(~reached & (moved >= low) & (moved <= high)).any(axis=0)
-        return settled
+_MANY = 100_000  # positions for which compiled code is worth its installation
+_FASTER = 5.0  # times, in one thread
+_OFFERED: list[bool] = []  # once in a process
 
 
-def _coefficients(path: TablePath, designs: Designs) -> dict[str, Array]:
-    """The coefficients of a family by register, (D,) each."""
-    found = loop_coefficients(designs)
-    input_radius = path.input_radius(
-        designs.start[:, path.model.compiled.solver.unknowns + path.lead]
+def _fill(
+    path: TablePath,
+    designs: Designs,
+    found: DesignRows,
+    certify: bool,
+    threads: int,
+    execution: Execution,
+) -> BoolArray:
+    """Fill in the designs that reach all rows, by compiled code or with arrays; their mask."""
+    if has_compiler():
+        return path.fill(designs, found, certify, threads, execution)
+    found.clear(np.ones(found.status.shape, dtype=bool), certify)
+    begin = perf_counter()
+    done: BoolArray = wings.use("families.array_march").fill(path, designs, found, certify)
+    if found.status.size >= _MANY and not _OFFERED:
+        _OFFERED.append(True)
+        _offer_compiler(found.status.size, perf_counter() - begin)
+    return done
+
+
+def _offer_compiler(positions: int, seconds: float) -> None:
+    """Say how long compiled code would take."""
+    logging.getLogger("linkwork").warning(
+        "%s positions took %.1f s; with the extra fast they take about %.1f s: "
+        'pip install "linkwork[fast]", or ".[fast]" in a clone',
+        f"{positions:,}",
+        seconds,
+        seconds / _FASTER,
     )
-    for j, (origin, rate) in enumerate(zip(path.origin, path.rate, strict=True)):
-        found[f"u{j}.origin"] = np.full(len(designs), origin)
-        found[f"u{j}.rate"] = np.full(len(designs), rate)
-        found[f"u{j}.spread"] = np.full(len(designs), input_radius[j])
-    return found
+
+
+def design_rows(
+    designs: Designs, *, certify: bool, threads: int = 1, execution: Execution | None = None
+) -> DesignRows:
+    """Solve every design over the rows of the mechanism's table, on the branch of its start.
+
+    The compiled march handles loop and linear equations; designs that it cannot complete (dead
+    points, change points, no position at the start) and mechanisms with other equations are swept
+    one at a time, so every row has the same status as in a single sweep.
+    """
+    model = designs.base
+    left = designs.problem == 0
+    path = TablePath.of(model)
+    found = DesignRows.blank(
+        model.compiled.solver.unknowns,
+        len(model.rows),
+        len(designs),
+        certify,
+        falling=path is not None and path.falling,
+    )
+    if path is None:
+        found.clear(np.ones(found.status.shape, dtype=bool), certify)
+    else:
+        left &= ~_fill(path, designs, found, certify, threads, execution or Execution())
+        # most of those without a start need not be built to be tried
+        if left.any():
+            open_ones = left & stay_open(designs)
+            leave_open(designs, np.flatnonzero(open_ones), found)
+            left &= ~open_ones
+    for k in np.flatnonzero(left):
+        sweep_single(designs, int(k), found, certify)
+    return found.freeze()

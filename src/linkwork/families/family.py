@@ -8,6 +8,7 @@ from importlib import import_module
 
 import numpy as np
 
+from linkwork import wings
 from linkwork.core.foundation.arrays import Array, BoolArray, IndexArray
 from linkwork.core.foundation.errors import InputError, internal
 from linkwork.core.foundation.loading import cores
@@ -20,7 +21,6 @@ from linkwork.families.building import Designs, designs_of
 from linkwork.families.compiled.execution import Execution
 from linkwork.families.design_sweep import design_rows
 from linkwork.families.family_motion import FamilyMotion
-from linkwork.families.gpu.kernel import graphics_card
 
 #: Modules that are compiled when they are loaded, those first that others need; each with its share
 #: of the time.
@@ -171,7 +171,9 @@ class Family:
         positions = len(self) * len(self.designs.base.rows)
         execution = Execution(specialised=specialised, positions=positions, device=device)
         if execution.device == "gpu":
-            graphics_card()  # raises an error before any computation
+            wings.use(
+                "families.gpu.kernel"
+            ).graphics_card()  # raises an error before any computation
         return execution
 
     def _sweep(self, certify: bool, threads: int, execution: Execution) -> FamilyMotion:

@@ -25,9 +25,13 @@ from linkwork.core.record.recorder import (
     lower_program,
     reserve,
 )
-from linkwork.families.march.march_programs import ThreadState, march_programs, printed_sections
+from linkwork.families.march.march_programs import (
+    Steps,
+    ThreadState,
+    march_programs,
+    printed_sections,
+)
 from linkwork.families.march.rate_programs import drawn_program
-from linkwork.families.march.sweep_kernel import Steps
 from linkwork.families.recorded_design import Part, RecordedDesign, RecordedNumber, Recording
 from linkwork.families.topologies import block_parts, lines_of_lengths
 

@@ -1,18 +1,14 @@
-"""Mechanisms as input of compiled kernels, and the kernel of each topology."""
+"""Mechanisms as input of compiled kernels."""
 
 from __future__ import annotations
 
-from collections.abc import Hashable, Mapping
-from dataclasses import dataclass, field
-from functools import lru_cache
+from collections.abc import Mapping
 
 import numpy as np
 
 from linkwork.core.foundation.arrays import Array
 from linkwork.core.motion.model import Model
 from linkwork.core.record.closure import BlockPart
-from linkwork.families.gpu.kernel import DeviceKernel
-from linkwork.families.march.sweep_kernel import SweepKernel
 
 # ----------------------------------------------------------------------
 # The equations of a mechanism as input of compiled kernels.
@@ -53,48 +49,3 @@ def own_coefficients(model: Model) -> dict[str, Array]:
 def zero_names(coefficients: Mapping[str, Array]) -> frozenset[str]:
     """Names of those that are zero."""
     return frozenset(name for name, values in coefficients.items() if not values.any())
-
-
-# ----------------------------------------------------------------------
-# The kernels of topologies, each made once; this module loads compiled code.
-
-
-_KEPT = 128  # kernels; one takes a hundredth of a second to make, and some 100 kB
-
-
-@dataclass(frozen=True)
-class _Topology:
-    """A mechanism as all with the same ``key`` are: their equations differ in numbers only.
-
-    ``zeros``: coefficients that are zero, by register.
-    """
-
-    key: Hashable
-    zeros: frozenset[str]
-    model: Model = field(compare=False)
-
-    @classmethod
-    def of(cls, model: Model, zeros: frozenset[str]) -> _Topology:
-        blocks = tuple((tuple(p.equations), p.unknowns) for p in block_parts(model))
-        lengths = tuple(sorted(lines_of_lengths(model)))
-        return cls((model.compiled.table.structure, blocks, lengths), zeros, model)
-
-
-def kernel_of(
-    model: Model, zeros: frozenset[str], certify: bool, device: str = "cpu"
-) -> SweepKernel:
-    """The kernel of a mechanism's topology.
-
-    Parameters
-    ----------
-    zeros : frozenset of str
-        Coefficients that are zero, by register.
-    """
-    return _kernel(_Topology.of(model, zeros), certify, device)
-
-
-@lru_cache(maxsize=_KEPT)
-def _kernel(topology: _Topology, certify: bool, device: str) -> SweepKernel:
-    kind = DeviceKernel if device == "gpu" else SweepKernel
-    model = topology.model
-    return kind(model.compiled.table, block_parts(model), topology.zeros, certify)

@@ -10,6 +10,7 @@ from typing import Any
 
 import numpy as np
 
+from linkwork import wings
 from linkwork.core.expression.derivatives import Jet, evaluate
 from linkwork.core.expression.grammar import parse
 from linkwork.core.foundation.arrays import Array, BoolArray, ComplexArray, IndexArray, TurnArray
@@ -28,10 +29,10 @@ from linkwork.core.motion.positions import QuantityValues
 from linkwork.core.record.closure import BlockPart
 from linkwork.core.record.recorder import Recorder, Value
 from linkwork.families.building import Designs
+from linkwork.families.compiled.code_cache import has_compiler
 from linkwork.families.design_sweep import DesignRows, loop_coefficients, zero_coefficients
 from linkwork.families.march.rate_programs import (
     PlaceProgram,
-    at_places,
     evidence_program,
     quantity_program,
     rate_program,
@@ -159,10 +160,16 @@ class PlaceReading:
         if rows.inputs is not None:
             v = np.concatenate([rows.v, rows.inputs.swapaxes(0, 1)])
             none = np.zeros((v.shape[1], 0))
-            return at_places(program, self.coefficients, v, none, rows.turns, threads)
+            return _at_places()(program, self.coefficients, v, none, rows.turns, threads)
         lead, rate = leading_input(model.rows)
         inputs = Drive.through(model, model.rows[0], rate, lead).path.at(model.rows[:, lead])
-        return at_places(program, self.coefficients, rows.v, inputs, rows.turns, threads)
+        return _at_places()(program, self.coefficients, rows.v, inputs, rows.turns, threads)
+
+
+def _at_places() -> Callable[..., Array]:
+    """Runs programs over positions: in compiled code, or with arrays."""
+    compiled = has_compiler()
+    return wings.use("families.march.places" if compiled else "families.place_arrays").at_places
 
 
 def design_speeds(designs: Designs) -> Array | None:

@@ -31,9 +31,7 @@ from linkwork.core.motion.following import turns_freely
 from linkwork.core.numerics.marching import FAR, GROWTH, HALF, NEARLY_FULL, SAME
 from linkwork.core.record.printing import JAVASCRIPT
 from linkwork.core.results.motion import Motion
-from linkwork.families.march.march_programs import NODES
-from linkwork.families.march.step_trial import START_STEPS, STEPS
-from linkwork.families.march.sweep_kernel import Steps
+from linkwork.families.march.march_programs import NODES, START_STEPS, STEPS, Steps
 from linkwork.families.printed_solver import PrintedSolver, print_solver
 from linkwork.families.recorded_design import RecordedDesign
 

@@ -17,7 +17,8 @@ from linkwork.core.foundation.statuses import CONVERGED, Certification
 from linkwork.core.numerics.block_solver import FEW, BlockSolver
 from linkwork.core.numerics.branch_tracking import InputPath, Node, interpolate, rows_of_nodes
 from linkwork.core.numerics.few_steps import StepProver
-from linkwork.core.numerics.system import SolvedRows
+from linkwork.core.numerics.newton import NewtonOptions
+from linkwork.core.numerics.system import BlockFunctions, SolvedRows
 
 _PIECE = 4096  # points worked on together: arrays that fit the cache
 _ROUNDS = 6  # corrections of an interpolated position, at most
@@ -25,8 +26,11 @@ _FAR = 0.1  # weighted: a position so far from its interpolation may lie on anot
 _WIDER = 1.0 + 8.0 * UNIT_ROUNDOFF  # covers the rounding of a difference
 
 
-class _Points(NamedTuple):
-    """P points of a path; arrays of variables are (N, P)."""
+class Points(NamedTuple):
+    """P points of a path; arrays of variables are (N, P), with lanes of designs as a last axis.
+
+    ``sound``: whether all are solved and proved, for each lane.
+    """
 
     v: Array
     first: Array
@@ -38,6 +42,7 @@ class _Points(NamedTuple):
     radius: Array
     unique: Array
     connected: BoolArray
+    sound: BoolArray
 
 
 def proved_rows(
@@ -77,12 +82,13 @@ def proved_rows(
         (rows, inputs, input_radius),
     ):
         v[n:, there], radius[:, there] = values.T, wide.T
+    parts = parts_of(solver, [block.record.of_arrays for block in solver.blocks if block.record])
     pieces = []
     with np.errstate(all="ignore"):
         for begin in range(0, max(len(order) - 1, 1), _PIECE):
             end = begin + _PIECE + 1
-            piece = _piece(solver, path, v[:, begin:end], radius[:, begin:end])
-            if piece is None:
+            piece = solve_points(parts, v[:, begin:end], radius[:, begin:end], path.rates)
+            if not piece.sound:
                 return None
             if not piece.connected.all() and not _closer(solver, path, times[begin:], piece):
                 return None
@@ -104,83 +110,110 @@ def proved_rows(
     )
 
 
-def _without_last(points: _Points) -> _Points:
+def _without_last(points: Points) -> Points:
     """All points but the last, which is the first of the next piece."""
-    return _Points._make(x[..., :-1] for x in points)
+    return Points._make([*(x[..., :-1] for x in points[:-1]), points.sound])
 
 
-def _together(pieces: Sequence[_Points]) -> _Points:
-    return _Points._make(np.concatenate(x, axis=-1) for x in zip(*pieces, strict=True))
+def _together(pieces: Sequence[Points]) -> Points:
+    columns = zip(*(piece[:-1] for piece in pieces), strict=True)
+    return Points._make([*(np.concatenate(x, axis=-1) for x in columns), pieces[0].sound])
 
 
-def _piece(solver: BlockSolver, path: InputPath, start: Array, radius: Array) -> _Points | None:
-    """Points corrected and proved block by block, and which steps between them are proved."""
-    n, count = solver.unknowns, start.shape[1]
+class Part(NamedTuple):
+    """A block: its functions of arrays, its unknowns, what it knows, weights of its unknowns."""
+
+    functions: BlockFunctions
+    unknowns: IndexArray
+    known: IndexArray
+    weights: Sequence[Any]
+
+
+def parts_of(
+    solver: BlockSolver, functions: Sequence[BlockFunctions], scale: Any = None
+) -> list[Part]:
+    """The blocks of a solver with functions; ``scale`` (D,): weights of lengths of designs."""
+    found = []
+    for block, own in zip(solver.blocks, functions, strict=True):
+        n = len(block.unknowns)
+        turns, weights = block.system.is_angle[:n], block.system.variable_scale[:n]
+        if scale is None:
+            each: list[Any] = weights.tolist()
+        else:
+            each = [1.0 if angle else scale for angle in turns]
+        found.append(Part(own, block.unknowns, block.variables[n:], each))
+    return found
+
+
+def solve_points(
+    parts: Sequence[Part], start: Array, radius: Array, rates: Sequence[float]
+) -> Points:
+    """Points corrected and proved block by block, and which steps between them are proved.
+
+    Parameters
+    ----------
+    start : (N, P) or (N, P, D)
+        Interpolated unknowns, and inputs.
+    radius : (p, P) or (p, P, D)
+        How far the intended inputs may be from these.
+    """
+    n, shape = len(start) - len(radius), start.shape[1:]
     v = start.copy()
     first, second, errors, far = np.zeros((4, *v.shape))
-    first[n:] = path.rate[:, None]
+    for k, rate in enumerate(rates, n):
+        first[k] = rate
     errors[n:] = radius
     far[n:, :-1] = np.abs(v[n:, 1:] - v[n:, :-1]) * _WIDER + radius[:, 1:] + radius[:, :-1]
-    iterations = np.zeros(count, dtype=np.int64)
-    residual, condition = np.zeros(count), np.ones(count)
-    worst, least = np.zeros(count), np.full(count, np.inf)
-    connected = np.ones(count - 1, dtype=bool)
-    for block in solver.blocks:
-        assert block.record is not None
-        functions, m = block.record.of_arrays, len(block.unknowns)
-        mine, known = block.unknowns, block.variables[m:]
-        done = _corrected(solver, functions.correct, list(v[block.variables]), m, iterations)
-        if done is None:
-            return None
-        error, here = done
-        v[mine] = here[:m]
-        moved = np.abs(v[mine] - start[mine]) / solver.variable_scale[mine, None]
+    iterations = np.zeros(shape, dtype=np.int64)
+    residual, condition = np.zeros(shape), np.ones(shape)
+    worst, least = np.zeros(shape), np.full(shape, np.inf)
+    connected, sound = np.ones((shape[0] - 1, *shape[1:]), dtype=bool), np.ones(shape, dtype=bool)
+    for functions, mine, known, weights in parts:
+        m = len(mine)
+        here = [*v[mine], *v[known]]
+        error, done = _corrected(functions.correct, here, m, iterations)
         found = functions.rates_and_proofs(
             *here, *first[known], *second[known], *errors[known], *far[known]
         )
-        rates, own, proofs = found[: 2 * m], found[2 * m], found[2 * m + 2 :]
+        bends, own, proofs = found[: 2 * m], found[2 * m], found[2 * m + 2 :]
         holds, near, unique, *bounds = proofs[: 3 + 2 * m]
         reached, _, _, *wide = proofs[3 + 2 * m :]
-        if not (np.all(holds) and (moved <= _FAR).all()):
-            return None
-        connected &= np.broadcast_to(reached, count)[:-1]
-        for i, k in enumerate(mine):
-            first[k], second[k] = rates[i], rates[m + i]
+        sound &= done & holds
+        connected &= np.broadcast_to(reached, shape)[:-1]
+        for i, (k, weight) in enumerate(zip(mine, weights, strict=True)):
+            v[k] = here[i]
+            sound &= np.abs(v[k] - start[k]) <= _FAR * weight
+            first[k], second[k] = bends[i], bends[m + i]
             errors[k], far[k] = bounds[i], wide[i]
             gap = np.abs(v[k, 1:] - v[k, :-1]) + np.maximum(errors[k, 1:], errors[k, :-1])
-            connected &= gap < np.broadcast_to(wide[m + i], count)[:-1]  # eq. (33)
+            connected &= gap < np.broadcast_to(wide[m + i], shape)[:-1]  # eq. (33)
         residual, condition = np.maximum(residual, error), np.maximum(condition, own)
         worst, least = np.maximum(worst, near), np.minimum(least, unique)
-    return _Points(
-        v, first, second, errors, iterations, residual, condition, worst, least, connected
-    )
+    return Points(
+        v, first, second, errors, iterations, residual, condition, worst, least, connected,
+        np.asarray(sound.all(axis=0)),
+    )  # fmt: skip
 
 
 def _corrected(
-    solver: BlockSolver,
-    correct: Callable[..., Any],
-    values: list[Array],
-    unknowns: int,
-    iterations: CountArray,
-) -> tuple[Array, list[Array]] | None:
-    """Residuals and variables of a block, corrected down to rounding; ``None`` if not all are."""
-    options, last = solver.options, None
-    for k in range(_ROUNDS):
+    correct: Callable[..., Any], values: list[Array], unknowns: int, iterations: CountArray
+) -> tuple[Array, BoolArray]:
+    """Variables of a block, in place, corrected down to rounding: residuals, and where they are."""
+    options, last = NewtonOptions(), None
+    for k in range(_ROUNDS + 1):
         error, size, _, *change = correct(*values)
         done = error <= options.equation_tolerance  # eq. (8)
         if last is not None:
             done |= last <= options.solution_tolerance
-        if done.all():
-            return error, values
-        if not (size < (_FAR if last is None else 0.5 * last + _FAR**8)).all():
-            return None
+        if k == _ROUNDS or done.all():
+            break
         values[:unknowns] = [x - y for x, y in zip(values, change, strict=False)]  # eq. (6)
         np.maximum(iterations, (k + 1) * ~done, out=iterations)
         last = size
-    return None
+    return error, done
 
 
-def _closer(solver: BlockSolver, path: InputPath, t: Array, piece: _Points) -> bool:
+def _closer(solver: BlockSolver, path: InputPath, t: Array, piece: Points) -> bool:
     """Whether the few steps of a piece that are open are proved on floats."""
     open_: IndexArray = np.flatnonzero(~piece.connected)
     if len(open_) > FEW:

@@ -114,7 +114,7 @@ class Shape:
     ones: frozenset[str]
 
     @classmethod
-    def of(cls, table: LoopTable, numbers: Mapping[str, float]) -> Shape:
+    def of(cls, table: LoopTable, numbers: Mapping[str, Any]) -> Shape:
         loops, lines = table.loops, table.linear
         parts = [
             loops.row, loops.length, loops.phase_term, loops.phase_variable, loops.phase_weight,
@@ -127,8 +127,8 @@ class Shape:
                 *(tuple(part.tolist()) for part in parts),
                 *(tuple(x for term in terms for x in term) for terms in laws),
             ),
-            frozenset(name for name, x in numbers.items() if x == 0.0),
-            frozenset(name for name, x in numbers.items() if x == 1.0 and name[0] in "sw"),
+            frozenset(name for name, x in numbers.items() if np.all(x == 0.0)),
+            frozenset(name for name, x in numbers.items() if name[0] in "sw" and np.all(x == 1.0)),
         )
 
 
@@ -445,6 +445,18 @@ class BlockFunctions:
         return function
 
 
+def functions_of(
+    table: LoopTable, numbers: Mapping[str, Any], form: Form, shape: Shape | None = None
+) -> BlockFunctions:
+    """The functions of blocks like ``table`` with given numbers, one each or (D,)."""
+    shape = Shape.of(table, numbers) if shape is None else shape
+    if shape not in _FUNCTIONS:
+        _FUNCTIONS[shape] = tuple(ShapeFunctions(table, shape, own) for own in _FORMS)
+    shared = _FUNCTIONS[shape][_FORMS.index(form)]
+    named = {**numbers, **_laws(table, form)}
+    return BlockFunctions(shared, tuple(named[name] for name in shared.names))
+
+
 class BlockRecord:
     """The functions of a block, :attr:`of_floats` and :attr:`of_arrays` (B,).
 
@@ -471,13 +483,8 @@ class BlockRecord:
         self.table = table
         numbers = numbers_of(table)
         shape = Shape.of(table, numbers)
-        if shape not in _FUNCTIONS:
-            _FUNCTIONS[shape] = tuple(ShapeFunctions(table, shape, form) for form in _FORMS)
         self.of_floats, self.of_arrays = (
-            BlockFunctions(shared, tuple(own[name] for name in shared.names))
-            for shared, own in zip(
-                _FUNCTIONS[shape], (numbers | _laws(table, form) for form in _FORMS), strict=True
-            )
+            functions_of(table, numbers, form, shape) for form in _FORMS
         )
 
     def __reduce__(self) -> tuple[type[BlockRecord], tuple[LoopTable]]:

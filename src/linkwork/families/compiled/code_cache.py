@@ -9,6 +9,7 @@ import os
 import sys
 import tempfile
 from collections.abc import Iterator
+from contextlib import suppress
 from functools import cache
 from pathlib import Path
 from threading import RLock
@@ -21,15 +22,20 @@ from linkwork.core.foundation.files import CACHE_VARIABLE, cache_folder, user_ca
 LOOPS = {"independent": "march", "lockstep": "in_step", "rowwise": "by_rows"}
 #: The loop over solution paths of a homotopy.
 PATH_LOOP = "path_kernel"
-#: Newton-Raphson of one row.
-SINGLE_LOOP = "compiled_rows"
-_FUNCTIONS = LOOPS | {PATH_LOOP: "follow_paths", SINGLE_LOOP: "solve_row"}
-_FOLDERS = {PATH_LOOP: "paths", SINGLE_LOOP: "single"}
+_FUNCTIONS = LOOPS | {PATH_LOOP: "follow_paths"}
+_FOLDERS = {PATH_LOOP: "paths"}
 _COMPILED = (
     "core/numerics/marching.py", "core/record/*.py", "families/compiled/*.py", "families/gpu/*.py",
-    "families/march/*.py", "families/paths/*.py", "families/single/*.py",
+    "families/march/*.py", "families/paths/*.py",
 )  # fmt: skip
 _PAYS = 10_000_000  # positions: as long as they take another loop does it take to compile one
+
+
+def has_compiler() -> bool:
+    """Whether Numba is installed: the extra ``fast``."""
+    with suppress(ModuleNotFoundError):
+        return importlib.util.find_spec("numba") is not None
+    return False
 
 
 def is_loaded(loop: str) -> bool:

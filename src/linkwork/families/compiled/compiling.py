@@ -13,7 +13,8 @@ from linkwork.core.foundation.errors import MissingPackageError
 try:
     import numba  # this module is loaded when a family is solved
 except ModuleNotFoundError:
-    raise MissingPackageError("compiled code needs Numba: pip install numba") from None
+    needed = 'compiled code needs Numba: pip install "linkwork[fast]"'
+    raise MissingPackageError(needed) from None
 from llvmlite import binding, ir
 from numba import types
 from numba.core import cgutils

@@ -15,9 +15,16 @@ from linkwork.core.foundation.errors import InputError, MissingPackageError
 from linkwork.core.record.printing import PYTHON
 from linkwork.families.compiled.code_cache import load_compiled
 from linkwork.families.compiled.execution import Execution
-from linkwork.families.march.march_programs import MarchPrograms, ThreadState, printed_sections
-from linkwork.families.march.step_trial import START_STEPS, STEPS, MarchResult
-from linkwork.families.march.sweep_kernel import Steps, SweepKernel
+from linkwork.families.march.march_programs import (
+    START_STEPS,
+    STEPS,
+    MarchPrograms,
+    Steps,
+    ThreadState,
+    printed_sections,
+)
+from linkwork.families.march.step_trial import MarchResult
+from linkwork.families.march.sweep_kernel import SweepKernel
 
 _P = ParamSpec("_P")
 _R = TypeVar("_R")

@@ -55,6 +55,37 @@ from linkwork.core.record.recorder import (
 )
 from linkwork.core.table.loop_table import LoopTable
 
+STEPS = 6  # of Newton-Raphson for one block of a trial
+START_STEPS = 50  # of Newton-Raphson for one block, from a guess
+
+
+@dataclass(frozen=True, kw_only=True)
+class Steps:
+    """How lanes step: sizes in t, tolerances as weighted changes.
+
+    ``tolerance``: below it a Newton-Raphson step is the last one; the error left is about its
+    square. ``most_correction``, ``most_drift``: without proofs, the largest first correction and
+    change of rates times step that are trusted.
+    """
+
+    first: float = 0.05
+    largest: float = 0.6
+    smallest: float = 1e-5
+    tolerance: float = 1e-8
+    most_turn: float = float(np.radians(40.0))
+    most_correction: float = 0.1
+    most_drift: float = 0.5
+
+    def times(self, size: float) -> Steps:
+        """For a path whose natural step is this many times longer: a length for lengths."""
+        return replace(
+            self,
+            first=size * self.first,
+            largest=size * self.largest,
+            smallest=size * self.smallest,
+        )
+
+
 NODES = ROLES - 1  # that a prediction can use
 #: Registers of the weights of nodes' values and derivatives in a prediction.
 WEIGHTS = tuple(f"{name}{role}" for role in range(1, ROLES) for name in "ab")

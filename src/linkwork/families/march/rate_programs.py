@@ -17,18 +17,11 @@ with the rates of all variables that a block knows. Registers by name:
 
 from __future__ import annotations
 
-import math
-from collections.abc import Callable, Iterable, Mapping, Sequence, Set
+from collections.abc import Callable, Mapping, Sequence, Set
 from dataclasses import dataclass
 
-import numpy as np
-
-from linkwork.core.foundation.arrays import Array, IndexArray, TurnArray
-from linkwork.core.foundation.loading import share_out
 from linkwork.core.record.closure import BlockPart, Closure, solve_linear
 from linkwork.core.record.recorder import (
-    LANES,
-    Code,
     Program,
     Recorder,
     Registers,
@@ -37,8 +30,6 @@ from linkwork.core.record.recorder import (
     reserve,
 )
 from linkwork.core.table.loop_table import LoopTable
-from linkwork.families.compiled.compiling import compiled
-from linkwork.families.compiled.interpreter import run
 
 Number = Value | float
 
@@ -234,126 +225,3 @@ def drawn_program(
     """Rates and residual, for a page that solves; see :func:`evidence_program`."""
     writer = _RateWriter(table, parts, zeros)
     return writer.finish([*writer.rates(), *writer.residual(lengths)])
-
-
-# ----------------------------------------------------------------------
-# Programs run over positions: of many designs in step, or of one design's rows.
-
-
-_PART = 1024  # designs that one thread works on at a time
-
-
-def at_places(
-    reading: PlaceProgram,
-    coefficients: Mapping[str, Array],
-    v: Array,
-    inputs: Array,
-    turns: TurnArray,
-    threads: int = 1,
-) -> Array:
-    """Run a program at the positions of D designs in R rows.
-
-    Parameters
-    ----------
-    coefficients : Mapping[str, (D,)]
-        By register; names that the program does not use are left out.
-    v : (n, R, D)
-        Unknowns; NaN gives NaN.
-    inputs : (R, p)
-    turns : (R, D)
-        Whole turns by which the first input of a position exceeds the row's.
-
-    Returns
-    -------
-    (len(reading.wanted), R, D)
-    """
-    n, rows, count = v.shape
-    ready = _Ready.of(reading, coefficients, n + inputs.shape[1])
-    design = np.array([coefficients[name] for name in ready.used]).reshape(len(ready.used), count)
-    found = np.empty((len(reading.wanted), rows, count))
-
-    def one(first: int) -> None:
-        part = slice(first, first + _PART)
-        _evaluate(
-            reading.program.code, ready.space(), ready.places,
-            np.ascontiguousarray(design[:, part]),
-            ready.variables, v[:, :, part], inputs, turns[:, part], ready.wanted,
-            found[:, :, part],
-        )  # fmt: skip
-
-    firsts = range(0, count, _PART)
-    share_out(one, firsts, min(threads, len(firsts)))
-    return found
-
-
-@dataclass(frozen=True, kw_only=True, eq=False)
-class _Ready:
-    """The registers that a program reads and writes, by number.
-
-    ``used``: the coefficients that it reads, at ``places``.
-    """
-
-    reading: PlaceProgram
-    used: list[str]
-    places: IndexArray
-    variables: IndexArray
-    wanted: IndexArray
-    height: int
-
-    @classmethod
-    def of(cls, reading: PlaceProgram, coefficients: Iterable[str], variables: int) -> _Ready:
-        named = reading.registers.named
-        used = [name for name in coefficients if name in named]
-        # a variable that the program does not use is loaded into a register of its own
-        spare = max(reading.program.height, reading.registers.count)
-        return cls(
-            reading=reading,
-            used=used,
-            places=np.array([named[name] for name in used], dtype=np.intp),
-            variables=np.array([named.get(f"v{k}", spare) for k in range(variables)], np.intp),
-            wanted=np.array([named[name] for name in reading.wanted], dtype=np.intp),
-            height=spare + 1,
-        )
-
-    def space(self) -> Array:
-        """A workspace with constants in place."""
-        return self.reading.registers.filled(self.height, LANES)
-
-
-@compiled
-def _evaluate(
-    code: Code,
-    w: Array,
-    places: IndexArray,
-    design: Array,
-    variables: IndexArray,
-    v: Array,
-    inputs: Array,
-    turns: TurnArray,
-    wanted: IndexArray,
-    found: Array,
-) -> None:
-    """LANES designs at a time, row by row."""
-    unknowns, rows, count = v.shape
-    for base in range(0, count, LANES):
-        lanes = min(LANES, count - base)
-        for lane in range(LANES):
-            member = base + min(lane, lanes - 1)
-            for j in range(len(places)):
-                w[places[j], lane] = design[j, member]
-        for row in range(rows):
-            for k in range(unknowns):
-                for lane in range(lanes):
-                    w[variables[k], lane] = v[k, row, base + lane]
-            for j in range(inputs.shape[1]):
-                for lane in range(lanes):
-                    w[variables[unknowns + j], lane] = inputs[row, j]
-            if inputs.shape[1]:
-                for lane in range(lanes):
-                    turn = turns[row, base + lane]
-                    if turn:
-                        w[variables[unknowns], lane] += turn * 2.0 * math.pi
-            run(code, w)
-            for j in range(len(wanted)):
-                for lane in range(lanes):
-                    found[j, row, base + lane] = w[wanted[j], lane]

@@ -28,9 +28,7 @@ from linkwork.families.compiled.compiling import (
     types,
 )
 from linkwork.families.compiled.interpreter import FIELDS, HIGH, run_part
-
-STEPS = 6  # of Newton-Raphson for one block of a trial
-START_STEPS = 50  # of Newton-Raphson for one block, from a guess
+from linkwork.families.march.march_programs import START_STEPS, STEPS
 
 aim = njit_no_refcount(step_size_aim)
 stride = njit_no_refcount(step_size_stride)

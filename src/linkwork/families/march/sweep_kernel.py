@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence, Set
 from contextlib import suppress
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from functools import partial
 from typing import Any
 
@@ -21,7 +21,7 @@ from linkwork.families import march as loops
 from linkwork.families.compiled.code_cache import is_cached, load_compiled
 from linkwork.families.compiled.execution import Execution
 from linkwork.families.march.dead_points import LastNodes
-from linkwork.families.march.march_programs import WEIGHTS, march_programs
+from linkwork.families.march.march_programs import WEIGHTS, Steps, march_programs
 from linkwork.families.march.one_design import (
     LoadedFamily,
     RowsOfOne,
@@ -62,33 +62,6 @@ _FEW = LANES // 4
 _SIDE_BY_SIDE = LANES  # rows of one design that fill the lanes
 _FEWER = 4  # both ways of so many fill the lanes that a processor computes at once
 _ROUGHLY = 1e-6  # weighted: the tolerance where a proof corrects once more
-
-
-@dataclass(frozen=True, kw_only=True)
-class Steps:
-    """How lanes step: sizes in t, tolerances as weighted changes.
-
-    ``tolerance``: below it a Newton-Raphson step is the last one; the error left is about its
-    square. ``most_correction``, ``most_drift``: without proofs, the largest first correction and
-    change of rates times step that are trusted.
-    """
-
-    first: float = 0.05
-    largest: float = 0.6
-    smallest: float = 1e-5
-    tolerance: float = 1e-8
-    most_turn: float = float(np.radians(40.0))
-    most_correction: float = 0.1
-    most_drift: float = 0.5
-
-    def times(self, size: float) -> Steps:
-        """For a path whose natural step is this many times longer: a length for lengths."""
-        return replace(
-            self,
-            first=size * self.first,
-            largest=size * self.largest,
-            smallest=size * self.smallest,
-        )
 
 
 class SweepKernel:

@@ -14,11 +14,11 @@ from itertools import islice
 from pathlib import Path
 from time import monotonic
 
+from linkwork import wings
 from linkwork.core.foundation.errors import InputError
 from linkwork.core.foundation.files import as_path
 from linkwork.core.foundation.loading import cores, installed_with
 from linkwork.core.foundation.values import whole_number
-from linkwork.families.gpu.kernel import graphics_card
 from linkwork.families.study.packages import check_packages
 from linkwork.families.study.plan import read_plan
 from linkwork.families.study.processes import ProcessExecutor
@@ -188,7 +188,9 @@ def run_study(
         workers = whole_number("workers", workers, least=1)
     study = plan if isinstance(plan, Study) else read_plan(plan)
     if study.job.device == "gpu" and scheduler is None:
-        graphics_card()  # raises an error before a store is created
+        wings.use(
+            "families.gpu.kernel"
+        ).graphics_card()  # raises an error before a store is created
     if workers is None:
         workers = 1 if study.job.device == "gpu" else cores()
     with open_store(study, as_path(store), force=force) as target:
