@@ -11,22 +11,15 @@ from dataclasses import replace
 from functools import partial
 
 import numpy as np
-from linkwork.families.by_kernels import kernel_rows
 
 import linkwork as lw
 from benchmarks.timing import bar, interleaved
-from linkwork.core.motion.following import Drive
-from linkwork.core.motion.model import leading_input
-from linkwork.core.motion.solving import first_position
-from linkwork.core.numerics.branch_tracking import Node, node_at
-from linkwork.core.numerics.newton import NewtonOptions
 from linkwork.families import Family, compile_kernels
 
 __all__ = ["measure"]
 
 _CYCLES = {"four-bar": 0.4, "jansen-leg": 0.8, "rapier-drive": 0.5}
 _COLD = {"four-bar": 3.5, "stephenson-far-crank": 5.0, "jansen-leg": 12.0, "double-butterfly": 40.0}
-_LONG = 100_000  # rows
 
 
 def measure(repeats: int = 15) -> bool:
@@ -59,7 +52,6 @@ def measure(repeats: int = 15) -> bool:
     held = True
     for (text, _, limit), own in zip(runs, times, strict=True):
         held = bar(text, [b / a for a, b in zip(unit, own, strict=True)], limit) and held
-    held = _long_table(repeats) and held
     return _cold_circuits(min(repeats, 7)) and held
 
 
@@ -71,30 +63,6 @@ def _few_designs(mechanism: lw.Mechanism, count: int) -> Family:
 def _one_turn(mechanism: lw.Mechanism) -> lw.Mechanism:
     (own,) = mechanism.description.inputs
     return mechanism.changed(inputs=(replace(own, start=0.0, stop=360.0, step=6.0),))
-
-
-def _long_table(repeats: int) -> bool:
-    """The public call against the kernel's part of it."""
-    (own,) = lw.example("four-bar").description.inputs
-    fine = replace(own, start=0.0, stop=360.0, step=360.0 / _LONG)
-    mechanism = lw.example("four-bar").changed(inputs=(fine,))
-    mechanism.sweep()
-    model = mechanism.model
-    drive, start = _drive_and_start(mechanism)
-    t, spread = model.rows[:, 0], np.zeros(1)
-    alone = partial(kernel_rows, drive, start, t, spread)
-    kernel, whole = interleaved([alone, mechanism.sweep], max(3, repeats // 3))
-    ratios = [b / a for a, b in zip(kernel, whole, strict=True)]
-    return bar(f"four-bar: {_LONG:,} rows / kernel with rates and proofs", ratios, 4.0)
-
-
-def _drive_and_start(mechanism: lw.Mechanism) -> tuple[Drive, Node]:
-    model = mechanism.model
-    lead, rate = leading_input(model.rows)
-    drive = Drive.through(model, model.rows[0], rate, lead)
-    found = first_position(model, model.start_inputs, NewtonOptions())
-    here = float(model.start_inputs[lead])
-    return drive, node_at(drive.solver, drive.path, here, found.v)
 
 
 def _cold_circuits(repeats: int) -> bool:

@@ -23,7 +23,7 @@ __all__ = ["LinkworkKernel", "rows_of_one"]
 
 def rows_of_one(march: FamilyMarch, t: Array) -> RowsOfOne:
     """The rows of a family of one design, to be computed again and again."""
-    steps = import_module("linkwork.families.march.sweep_kernel").Steps()
+    steps = import_module("linkwork.families.march.march_programs").Steps()
     return march.kernel.prepare_single(
         march.coefficients,
         march.guess[:, 0],
@@ -56,7 +56,7 @@ class LinkworkKernel(Peer):
         # compiled code is loaded by those who use it
         path = import_module("linkwork.families.design_sweep").TablePath.of(model)
         assert path is not None
-        execution = import_module("linkwork.families.compiled.interpreter").Execution
+        execution = import_module("linkwork.families.compiled.execution").Execution
         march = path.march(family.designs, self.certify, 1, execution(specialised=self.compiled))
         t = model.rows[:, path.lead]
         t = np.ascontiguousarray(t[::-1] if path.falling else t)

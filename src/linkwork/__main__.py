@@ -13,8 +13,6 @@ from linkwork.core.commands.terminal import (
     watch_interrupts,
 )
 
-__all__ = ["main"]
-
 
 def main() -> None:
     """Entry point of the installed program."""

@@ -21,8 +21,8 @@ VARIED = {
 }
 
 
-def swept(name: str, **options: bool) -> FamilyMotion:
-    return lw.example(name).family(VARIED[name]).sweep(**options)
+def swept(name: str, *, certify: bool = True) -> FamilyMotion:
+    return lw.example(name).family(VARIED[name]).sweep(certify=certify)
 
 
 @pytest.mark.parametrize("name", list(VARIED))

@@ -32,7 +32,8 @@ from linkwork.families.compiled.compiling import CodeFiles
 from linkwork.families.compiled.execution import Execution
 from linkwork.families.compiled.interpreter import run
 from linkwork.families.march import step_trial as step_control, sweep_kernel
-from linkwork.families.march.sweep_kernel import Steps, SweepKernel
+from linkwork.families.march.march_programs import Steps
+from linkwork.families.march.sweep_kernel import SweepKernel
 from linkwork.families.topologies import block_parts
 
 PLACES = 5

@@ -14,8 +14,7 @@ from linkwork.app.pages.page_data import SolverData
 from linkwork.core.foundation.arrays import Array
 from linkwork.core.numerics import marching as prediction, marching as step_size
 from linkwork.core.record.recorder import ROLES
-from linkwork.families.march.march_programs import NODES
-from linkwork.families.march.step_trial import START_STEPS, STEPS
+from linkwork.families.march.march_programs import NODES, START_STEPS, STEPS
 from linkwork.families.printed_solver import PrintedSolver
 
 _HEAD = """\

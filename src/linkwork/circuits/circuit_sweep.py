@@ -17,8 +17,6 @@ from linkwork.core.motion.limits import BranchEnd, end_at_dead_point
 from linkwork.core.motion.model import Model
 from linkwork.core.numerics.branch_tracking import node_at
 
-__all__ = ["Around", "FurtherBranch", "further_branches"]
-
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class FurtherBranch:

@@ -28,8 +28,6 @@ from linkwork.core.numerics.newton import NewtonOptions
 from linkwork.core.results.failure import Failure
 from linkwork.core.results.position import Certificate, Position
 
-__all__ = ["configurations", "solve_configuration", "start_in_configuration"]
-
 _NONE = "there is no configuration at this input: the loops cannot be closed"
 
 

@@ -17,8 +17,6 @@ from linkwork.core.numerics.branch_tracking import BOLD, Node, follow
 from linkwork.core.numerics.curve_tracing import Curve, Leg, crossing_beyond, node_between
 from linkwork.core.numerics.local_parametrization import Parametrization, Parametrizations
 
-__all__ = ["cut_at_crossing"]
-
 _NARROWINGS = 24  # of a step at most, each
 _INSIDE = (0.4, 0.6)  # to before the second or behind the first of these shares
 _SHORT = 5e-4  # of the leader's natural size: from so near change points are located

@@ -22,8 +22,6 @@ from linkwork.core.numerics.branch_tracking import InputPath
 from linkwork.core.numerics.decomposition import closure_of
 from linkwork.core.table.loop_table import LoopTable, TableSplitter
 
-__all__ = ["DeadPointForm", "dead_point_form"]
-
 _DEPENDENT = 1e-9  # smallest singular value of the lengths' columns, relative to the largest
 
 

@@ -17,8 +17,6 @@ from linkwork.core.motion.model import FITS, misfit
 from linkwork.core.numerics.branch_tracking import node_at, rows_on_track
 from linkwork.core.numerics.local_parametrization import Parametrizations, same_position
 
-__all__ = ["FollowedCircuit", "StraightWay", "explorer_of", "is_regular", "straight_way"]
-
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class StraightWay:

@@ -18,8 +18,6 @@ from linkwork.core.motion.model import Model, model_of
 from linkwork.core.motion.solving import solve
 from linkwork.core.results.check import Inversion
 
-__all__ = ["driven_otherwise", "inversion", "inversions"]
-
 
 def inversion(model: Model, link: str, which: Input | None = None) -> Linkage:
     """The mechanism with another link as ground, from the position at its guess.

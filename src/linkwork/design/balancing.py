@@ -22,8 +22,6 @@ from linkwork.core.mechanism.machine import Mass
 from linkwork.design.results import Counterweight, Counterweights
 from linkwork.forces.reactions.solving import forces_of_motion
 
-__all__ = ["balanced", "counterweights"]
-
 
 @dataclass(frozen=True)
 class _FourBar:

@@ -7,8 +7,6 @@ from collections.abc import Iterator
 from linkwork.core.results.listing.motion_listing import Column, fixed, short, significant
 from linkwork.design.tolerance_results import Tolerance
 
-__all__ = ["contribution_columns", "sampled_fields", "tolerance_fields"]
-
 
 def tolerance_fields(found: Tolerance) -> Iterator[tuple[str, str]]:
     """The quantity, its worst case and its standard deviation."""

@@ -12,15 +12,6 @@ from linkwork.core.foundation.containers import read_only
 from linkwork.core.foundation.errors import internal
 from linkwork.core.results.tables import Summary
 
-__all__ = [
-    "Counterweight",
-    "Counterweights",
-    "Flywheel",
-    "Harmonics",
-    "InflectionCircle",
-    "MotorCheck",
-]
-
 _NONE = 1e-12  # of a quantity: rounding
 
 

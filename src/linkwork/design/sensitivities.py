@@ -29,16 +29,6 @@ from linkwork.design.derivatives.rows import (
 )
 from linkwork.design.tolerance_results import Sensitivity, SensitivityStatus
 
-__all__ = [
-    "LIMITS",
-    "is_of_motion",
-    "play_of_motion",
-    "play_of_position",
-    "sensitivity_of_motion",
-    "sensitivity_of_position",
-    "sensitivity_of_rows",
-]
-
 #: The ends of the range of the leading input, as numbers of a motion.
 LIMITS = ("limit.lower", "limit.upper")
 

@@ -43,8 +43,6 @@ from linkwork.design.tolerance_results import (
 )
 from linkwork.families.sampling import Normal, random
 
-__all__ = ["Deviations", "stated_deviations", "tolerance_of"]
-
 
 @dataclass(frozen=True, kw_only=True)
 class Deviations:

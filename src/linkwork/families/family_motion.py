@@ -33,8 +33,6 @@ from linkwork.families.values import (
     design_speeds,
 )
 
-__all__ = ["FamilyMotion"]
-
 _MOST_BYTES = 4 << 30  # limit for labelled arrays requested without names
 _EVIDENCE = ("residual", "condition", "radius")  # names of the evidence of rows
 _NEAR = 1 << 16  # positions whose rates are computed at a time: temporaries fit into the cache

@@ -6,8 +6,6 @@ import numpy as np
 
 from linkwork.core.foundation.arrays import Array
 
-__all__ = ["interpolated_peaks", "lagrange_weights"]
-
 _NEWTON = 3
 _OTHER = 0.05  # of the term before the last one: terms that shrink more are chance
 

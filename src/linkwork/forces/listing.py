@@ -12,8 +12,6 @@ from linkwork.core.foundation.arrays import BoolArray
 from linkwork.forces.results import ForceStatus, Reactions
 from linkwork.forces.stall import Stall
 
-__all__ = ["finite_forces", "force_fields", "force_status_fields", "undefined_fields"]
-
 
 def force_status_fields(found: Reactions) -> Iterator[tuple[str, str]]:
     """The number of rows with forces, and those without by their reasons."""

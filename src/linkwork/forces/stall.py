@@ -6,8 +6,6 @@ from dataclasses import dataclass
 
 from linkwork.core.results.position import Position
 
-__all__ = ["Stall"]
-
 
 @dataclass(frozen=True, kw_only=True)
 class Stall:

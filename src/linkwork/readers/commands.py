@@ -17,8 +17,6 @@ from linkwork.core.textfile.writer import write_text as text_of
 from linkwork.readers.formats import FORMATS
 from linkwork.readers.importing import Imported, imported
 
-__all__ = ["import_command"]
-
 
 @click.command("import")
 @file_argument

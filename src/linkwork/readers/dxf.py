@@ -13,8 +13,6 @@ from dataclasses import dataclass, field
 from linkwork.core.foundation.names import GROUND
 from linkwork.readers.assembly import Assembly, Source, drive_joint
 
-__all__ = ["SUFFIXES", "TITLE", "matches", "read"]
-
 TITLE, SUFFIXES = "DXF sketch", (".dxf",)
 _GROUND_LAYERS = ("ground", "frame", "fixed", "base")
 _INPUT_LAYERS = ("input", "driver", "crank", "motor")

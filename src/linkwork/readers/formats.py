@@ -13,8 +13,6 @@ from linkwork.core.mechanism.part.index import PARTS
 from linkwork.readers import dxf, geogebra, linkage2, mjcf, pmks, pylinkage, pyslvs, urdf
 from linkwork.readers.assembly import Drawn, Exported, LeftOut, Source
 
-__all__ = ["FORMATS", "WRITERS", "Reading", "carried", "read_foreign", "write_foreign"]
-
 #: Modules by the name of their format; each has ``TITLE``, ``SUFFIXES``, ``matches`` and ``read``.
 FORMATS: Mapping[str, ModuleType] = {
     "pmks": pmks,

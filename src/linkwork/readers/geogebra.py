@@ -20,8 +20,6 @@ from linkwork.core.mechanism.inputs import Input
 from linkwork.readers.assembly import LARGEST, Assembly, Source
 from linkwork.readers.robots import Element, xml_tree
 
-__all__ = ["SUFFIXES", "TITLE", "matches", "read"]
-
 TITLE, SUFFIXES = "GeoGebra construction", (".ggb",)
 _ENTRY = "geogebra.xml"
 _AXES = {"xAxis": 1 + 0j, "yAxis": 1j}

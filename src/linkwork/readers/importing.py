@@ -22,8 +22,6 @@ from linkwork.core.mechanism.linkage import Linkage
 from linkwork.readers.assembly import LARGEST, Exported, LeftOut
 from linkwork.readers.formats import FORMATS, carried, read_foreign, write_foreign
 
-__all__ = ["Imported", "imported"]
-
 
 @internal("description")
 @dataclass(frozen=True, kw_only=True)

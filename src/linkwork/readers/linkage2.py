@@ -15,8 +15,6 @@ from linkwork.core.mechanism.part.index import PARTS
 from linkwork.readers.assembly import Assembly, Source, drive_joint
 from linkwork.readers.robots import Element, xml_tree
 
-__all__ = ["SUFFIXES", "TITLE", "matches", "read"]
-
 TITLE, SUFFIXES = "Linkage (Rector) XML", (".linkage2",)
 _DRAWING_LAYER = 1
 #: The unit of our file by the one that is shown.

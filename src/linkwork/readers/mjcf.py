@@ -28,8 +28,6 @@ from linkwork.readers.robots import (
     xml_tree,
 )
 
-__all__ = ["SUFFIXES", "TITLE", "matches", "read"]
-
 TITLE, SUFFIXES = "MJCF (MuJoCo)", (".mjcf", ".xml")
 _READ = ("compiler", "default", "worldbody", "equality", "actuator")
 _DRAWN = ("size", "visual", "statistic", "asset")  # of pictures and buffers only

@@ -16,8 +16,6 @@ from linkwork.core.foundation.names import GROUND
 from linkwork.core.mechanism.inputs import Input
 from linkwork.readers.assembly import Assembly, Drawn, Source
 
-__all__ = ["SUFFIXES", "TITLE", "matches", "read", "write"]
-
 TITLE, SUFFIXES = "pylinkage JSON", (".json",)
 _STEP = "angle of a step or speed of the input: pylinkage states no time"
 

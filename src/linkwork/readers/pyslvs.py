@@ -12,8 +12,6 @@ import re
 from linkwork.core.foundation.names import GROUND
 from linkwork.readers.assembly import Assembly, Drawn, JointRow, Source, add_joints
 
-__all__ = ["SUFFIXES", "TITLE", "matches", "read", "write"]
-
 TITLE, SUFFIXES = "Pyslvs expression", (".pyslvs",)
 _TOKEN = re.compile(r"\s*(?:#[^\n]*\n\s*)*([\[\],]|[^\s\[\],#]+)")
 

@@ -17,8 +17,6 @@ from linkwork.core.mechanism.inputs import Input
 from linkwork.readers.assembly import Assembly, Source
 from linkwork.readers.robots import Body, BodyJoint, Element, Planar, Pose, turn_about, xml_tree
 
-__all__ = ["SUFFIXES", "TITLE", "matches", "read"]
-
 TITLE, SUFFIXES = "URDF", (".urdf",)
 _KINDS = {"revolute": "hinge", "continuous": "hinge", "prismatic": "slide"}
 _ROWS = 72  # steps of the table: those of 5 degrees of a turn

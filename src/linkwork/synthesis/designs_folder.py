@@ -24,8 +24,6 @@ from linkwork.synthesis.task_copy import REFUSED, task_copy
 from linkwork.synthesis.tasks.task import Task
 from linkwork.writers.charts.circuits import front_chart
 
-__all__ = ["FolderOptions", "check_folder", "keeps_earlier", "write_designs"]
-
 _LONGEST = 800.0  # the longer side of a picture [CSS pixels]
 _LONGEST_STEM = 160  # bytes of a name: file systems take 255, temporary files add some
 _TABLE, _FRONT, _PAGE = "designs.csv", "front.svg", "index.html"

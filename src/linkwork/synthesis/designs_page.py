@@ -13,8 +13,6 @@ from linkwork.synthesis.defects.verdicts import JudgedDesign
 from linkwork.synthesis.solvers.result import Synthesis, goal_misses
 from linkwork.synthesis.solvers.solving import advice_of, remarks_on
 
-__all__ = ["designs_page"]
-
 _LONGEST = 300.0  # the longer side of a picture [CSS pixels]
 _CLASS = "linkwork-designs"
 _STYLE = """

@@ -10,8 +10,6 @@ from pathlib import Path
 from linkwork.core.textfile.text_edits import TextEdits
 from linkwork.synthesis.tasks.task import Task
 
-__all__ = ["REFUSED", "TaskCopy", "task_copy"]
-
 REFUSED = "refused"
 # names of files of a synthesis
 _OWN = re.compile(

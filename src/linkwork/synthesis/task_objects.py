@@ -21,8 +21,6 @@ from linkwork.synthesis.solvers.solving import solve_task
 from linkwork.synthesis.tasks import task_file
 from linkwork.synthesis.tasks.task import Task as task_Task
 
-__all__ = ["Synthesis", "Task"]
-
 
 class Task:
     """What a mechanism should do: poses, points or a function, with wishes.

@@ -24,7 +24,6 @@ if TYPE_CHECKING:
     from linkwork.app.task.cycle import SolveTask
     from linkwork.synthesis.suggestion.suggesting import Suggesting
 
-__all__ = ["Bench"]
 
 _KIND = re.compile(r"^\s*task\s*=", re.MULTILINE)
 _FIRST_TABLE = re.compile(r"^\s*\[", re.MULTILINE)

@@ -25,7 +25,6 @@ if TYPE_CHECKING:
     from linkwork.app.task.cycle import SolveTask
     from linkwork.synthesis.suggestion.suggesting import Suggesting
 
-__all__ = ["BrowserDesk"]
 
 _LOOK_FOR_MESSAGES = 0.025  # interval at which long work looks for newer changes [s]
 _LONGEST_NAME = 100  # characters of a file's name
@@ -33,7 +32,7 @@ _EXAMPLE = "example="
 _TASK = "task="
 
 
-class BrowserDesk:
+class BrowserDesk:  # noqa: V102  # the page in a browser makes it
     """Processes the requests of one page, one at each call of :meth:`work`.
 
     Parameters

@@ -23,8 +23,6 @@ from linkwork.core.mechanism.part.gears import ArmPair
 from linkwork.core.mechanism.part.guides import Slider
 from linkwork.core.mechanism.part.part import turning_links
 
-__all__ = ["DrawnSheet", "away_from_line", "short"]
-
 _LETTERS = "ABCDFGHJKLMNPQRSTUVWXYZ"  # as of points drawn on the page
 #: Of the span: places nearer to each other are the same.
 _LEAST = 1e-9

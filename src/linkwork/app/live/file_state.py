@@ -6,26 +6,6 @@ from dataclasses import dataclass
 
 from linkwork.app.live.requests import Edit
 
-__all__ = [
-    "ChangeableNumber",
-    "Drive",
-    "DrivenInput",
-    "EntryShown",
-    "FileState",
-    "Lack",
-    "Link",
-    "MassShown",
-    "PaletteField",
-    "PaletteForm",
-    "PalettePart",
-    "PartShown",
-    "Pick",
-    "Point",
-    "ProblemShown",
-    "Remedy",
-    "Unknown",
-]
-
 Point = tuple[float, float]
 
 

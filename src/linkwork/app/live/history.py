@@ -4,8 +4,6 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-__all__ = ["History"]
-
 _MOST_CHARACTERS = 20_000_000  # of all texts together; the oldest texts are dropped first
 
 

@@ -17,8 +17,6 @@ from linkwork.core.mechanism.part.index import PARTS
 from linkwork.core.mechanism.part.part import Part
 from linkwork.core.textfile.text_edits import TextEdits
 
-__all__ = ["alone_with", "part_row", "parts_shown", "put_entry"]
-
 #: Entries that are shown also where the file leaves them out.
 _NAMING = ("arm", "on")
 #: Entries that exclude each other.

@@ -11,8 +11,6 @@ from typing import cast
 
 from uvicorn.protocols.http.h11_impl import H11Protocol
 
-__all__ = ["PATIENCE", "ShortConnection"]
-
 #: Seconds after which a connection that did not become a page's is closed.
 PATIENCE = 10.0
 _MOST = 32  # at a time

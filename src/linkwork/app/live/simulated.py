@@ -18,8 +18,6 @@ from linkwork.core.mechanism.loaded import LoadedBodies
 from linkwork.core.results.listing.motion_listing import whole_energy
 from linkwork.core.results.motion import Motion
 
-__all__ = ["not_simulated", "simulate", "simulation_found"]
-
 _SMOOTH = 0.04  # between rows [s]: twenty-five pictures per second
 _USUAL_ROWS = 400
 _MOST_ROWS = 3000

@@ -6,21 +6,6 @@ from dataclasses import dataclass
 
 from linkwork.app.live.file_state import Point, ProblemShown
 
-__all__ = [
-    "CognateShown",
-    "CognatesFound",
-    "DesignFound",
-    "DesignOpened",
-    "DesignShown",
-    "DesignsSuggested",
-    "DyadShown",
-    "PositionShown",
-    "SkeletonShown",
-    "TaskSolved",
-    "TaskState",
-    "TaskUnsolved",
-]
-
 
 @dataclass(frozen=True, kw_only=True)
 class PositionShown:

@@ -8,30 +8,6 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-__all__ = [
-    "LISTS",
-    "OF_TASKS",
-    "TASK_EDITS",
-    "AddTaskPoint",
-    "DrawCurve",
-    "FindNearest",
-    "ImproveDesign",
-    "MoveTaskPoint",
-    "OpenDesign",
-    "OpenTask",
-    "RemoveTaskPoint",
-    "ReturnToTask",
-    "SetRegion",
-    "SetTaskEntry",
-    "ShowCognates",
-    "ShowDesign",
-    "SolveTask",
-    "TaskEdit",
-    "TaskQuestion",
-    "TaskRequest",
-    "TurnPose",
-]
-
 #: The lists of points of a task, with their keys in the file.
 LISTS = {
     "position": ("positions",),

@@ -52,8 +52,6 @@ from linkwork.core.foundation.errors import InputError, MechanismError
 from linkwork.core.textfile.text_edits import TextEdits
 from linkwork.core.textfile.toml_text import data_of
 
-__all__ = ["Workbench"]
-
 #: Requests that add text: their problems are at lines that the file does not have.
 _ADDING = (AddPoint, AddLink, AddJoint, AddPart, DrawPart, Together)
 

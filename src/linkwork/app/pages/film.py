@@ -20,7 +20,6 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
     from matplotlib.text import Text
 
-__all__ = ["film"]
 
 _LONG_SIDE, _SHORT_SIDE = 6.0, 2.0  # longer side of the drawing [inches]
 _MARGIN, _LINE = 0.2, 0.24  # margin of the drawing, and height of a text line [inches]

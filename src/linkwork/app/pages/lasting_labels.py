@@ -16,8 +16,6 @@ from linkwork.core.drawing.pose import Pose
 from linkwork.core.drawing.scene import Measures, Primitive, Text, text_width, xy
 from linkwork.core.foundation.arrays import Array, BoolArray, ComplexArray
 
-__all__ = ["lasting_labels"]
-
 _NAME_ON_NAME = 100.0
 _BELOW = 0.4  # penalty for a position under the ground symbol
 _CLEAR = 0.12  # margin of every name [em]

@@ -17,8 +17,6 @@ from linkwork.core.foundation.arrays import BoolArray
 from linkwork.core.mechanism.skeleton import Skeleton
 from linkwork.core.results.quantity import Units
 
-__all__ = ["still_page"]
-
 _ROW: BoolArray = np.ones(1, dtype=bool)
 
 

@@ -32,8 +32,6 @@ from linkwork.core.textfile.writer import write_text
 from linkwork.synthesis.suggestion.suggesting import Suggesting
 from linkwork.synthesis.tasks.task import Task
 
-__all__ = ["TaskBench"]
-
 _MOST_NEAREST = 100
 
 

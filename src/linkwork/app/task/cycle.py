@@ -25,8 +25,6 @@ from linkwork.synthesis.solvers.solving import near_misses
 from linkwork.synthesis.tasks.task import Task
 from linkwork.synthesis.tasks.task_file import located_task_error, read_task_text
 
-__all__ = ["SolveTask", "TaskCycle"]
-
 _WHILE_DRAGGED = 0.12  # a task that takes longer is solved when the drag ends [s]
 _NOT_LOADED = "Data of the solver cannot be loaded: check the connection, then solve again."
 _CANCELLED = "The search was ended: no designs are shown."

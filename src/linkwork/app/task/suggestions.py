@@ -15,8 +15,6 @@ from linkwork.synthesis.solvers.swept_design import SweptDesign
 from linkwork.synthesis.suggestion.suggesting import Origin, SuggestedDesign, Suggesting
 from linkwork.synthesis.tasks.task import Task
 
-__all__ = ["FIRST", "Suggestions"]
-
 FIRST = -2  # the index of the first suggested design; the others are below
 _CLOSES = 2.0  # largest steps: how near the ends of a closed curve are
 _OPEN = "The positions are no closed curve: paths are compared as if a straight line closed it."

@@ -28,8 +28,6 @@ from linkwork.core.numerics.bilinear import (
     sums_hold,
 )
 
-__all__ = ["Structure", "structure_of"]
-
 
 @dataclass(frozen=True)
 class Structure:

@@ -19,8 +19,6 @@ import numpy as np
 from linkwork.core.foundation.arrays import Array, ComplexArray, IndexArray
 from linkwork.core.numerics.bilinear import BilinearSystem
 
-__all__ = ["ParameterHomotopy", "StartHomotopy", "normal_numbers", "null_space"]
-
 
 def null_space(closure: ComplexArray) -> tuple[ComplexArray, ComplexArray]:
     """Orthonormal bases of the null space, (K, K - L), and row space, (K, L), of (L, K)."""

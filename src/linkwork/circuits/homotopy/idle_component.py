@@ -19,8 +19,6 @@ import numpy as np
 from linkwork.circuits.homotopy.dead_points import DeadPointSystem
 from linkwork.core.foundation.arrays import Array, ComplexArray
 
-__all__ = ["Lead", "RealPoints", "keeps_complex_input", "real_motion"]
-
 #: The input's e^{iθ} or length at x (n,), as U and as V have it, (2,), and the slopes, (2, n).
 Lead = Callable[[ComplexArray], tuple[ComplexArray, ComplexArray]]
 

@@ -37,17 +37,6 @@ from linkwork.circuits.homotopy.polynomial_system import (
 )
 from linkwork.core.foundation.arrays import Array, BoolArray, ComplexArray
 
-__all__ = [
-    "SEED",
-    "HomotopyFromProducts",
-    "HomotopyFromRelative",
-    "RootFamily",
-    "Solved",
-    "isolated_roots",
-    "random_member",
-    "solve_random_member",
-]
-
 #: All random numbers follow from this one, so that every run gives the same answer.
 SEED = 20_210_501
 

@@ -10,15 +10,6 @@ import numpy as np
 
 from linkwork.core.foundation.arrays import ComplexArray, CountArray, solutions
 
-__all__ = [
-    "SAME_ROOT",
-    "PolynomialSystem",
-    "Roots",
-    "distinct_solutions",
-    "nearest_solution",
-    "polish_roots",
-]
-
 SAME_ROOT = 1e-6  # two solutions are the same one
 _POLISH = 12  # steps of Newton's method at most
 

@@ -13,8 +13,6 @@ from linkwork.circuits.homotopy.polynomial_system import Roots
 from linkwork.core.foundation.arrays import Array, BoolArray, ComplexArray, IndexArray
 from linkwork.core.numerics.bilinear import BilinearSystem
 
-__all__ = ["quadratic_roots"]
-
 _DOUBLE = 1e-14  # discriminant, relative to its parts, that is zero within rounding
 _NOTHING = 1e-13  # coefficients, relative to the products they come from, that are
 _FINITE = 1e-9  # smallest homogenising coordinate, of vectors of length 1, of a finite solution

@@ -16,8 +16,6 @@ from linkwork.core.mechanism.linkage import Linkage
 from linkwork.core.mechanism.loops import Loops, PlainEquations
 from linkwork.core.textfile.reader import example_text, examples
 
-__all__ = ["example", "linkage", "load", "loads", "loops", "plain_equations"]
-
 
 def load(path: str | Path) -> Mechanism:
     """Read a mechanism file, or the mechanism in a link.

@@ -16,8 +16,6 @@ from linkwork.core.mechanism.bodies import Guide
 from linkwork.core.mechanism.part.guides import GenevaWheel
 from linkwork.core.mechanism.skeleton import Rail
 
-__all__ = ["Track", "guide_symbols", "track_gaps", "tracks"]
-
 
 @dataclass(frozen=True, kw_only=True)
 class Track:

@@ -25,8 +25,6 @@ from linkwork.core.mechanism.bodies import DiscFigure
 from linkwork.core.mechanism.part.guides import Strut
 from linkwork.core.mechanism.skeleton import Bar, DrivenPart
 
-__all__ = ["input_arrows"]
-
 _SWEEP = math.radians(110)
 _LONGEST = 15.0  # length of an arrow around a large ring, in pin radii
 _TURNED = 0.5  # penalty for rotating an arrow from its default position [1/rad]

@@ -7,8 +7,6 @@ from contextlib import contextmanager
 
 from linkwork.core.foundation.errors import MissingPackageError
 
-__all__ = ["house_settings"]
-
 
 @contextmanager
 def house_settings() -> Iterator[None]:

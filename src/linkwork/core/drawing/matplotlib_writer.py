@@ -32,7 +32,6 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
-__all__ = ["FORMATS", "Brush", "Chart", "figure", "image"]
 
 #: Formats of image files.
 FORMATS = ("png", "svg", "pdf")

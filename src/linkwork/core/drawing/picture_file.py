@@ -12,8 +12,6 @@ from linkwork.core.drawing.tikz import tikz_picture
 from linkwork.core.foundation.errors import InputError
 from linkwork.core.foundation.files import as_path, save_bytes, suffix_of
 
-__all__ = ["FORMATS", "check_picture", "render", "write"]
-
 _TIKZ = "tikz"
 #: File formats by suffix.
 FORMATS = (*matplotlib_writer.FORMATS, _TIKZ)

@@ -22,8 +22,6 @@ from linkwork.core.drawing.scene import (
 from linkwork.core.foundation.names import as_latex
 from linkwork.core.foundation.units import LENGTHS
 
-__all__ = ["comment_lines", "picture_scale", "tikz_picture"]
-
 _WIDEST = 150.0  # of a picture [mm]: a column of text
 _LEAST = 75.0  # a smaller picture is enlarged
 _POINT = 72.27 / 25.4  # TeX's points per millimetre

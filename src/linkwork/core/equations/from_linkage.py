@@ -30,8 +30,6 @@ from linkwork.core.mechanism.inputs import Input
 from linkwork.core.mechanism.linkage import Linkage
 from linkwork.core.mechanism.part.guides import Cylinder
 
-__all__ = ["write_loops"]
-
 
 def write_loops(linkage: Linkage) -> LoopEquations:
     """The loop equations of a linkage: unknowns are link angles and slider lengths.

@@ -23,8 +23,6 @@ from linkwork.core.foundation.names import canonical
 from linkwork.core.mechanism.description import Problems
 from linkwork.core.mechanism.loops import Loops, PlainEquations
 
-__all__ = ["read_loops", "read_plain_equations"]
-
 
 def read_loops(mechanism: Loops) -> LoopEquations:
     """The equations of a mechanism given by its loops.

@@ -18,8 +18,6 @@ from linkwork.core.mechanism.description import Description
 from linkwork.core.mechanism.inputs import THROUGH, Input, LawSegment, Piece, pieces_of
 from linkwork.core.table.rows import Piecewise
 
-__all__ = ["TIME", "driven_by_time", "law_motions", "time_variable"]
-
 #: The name of the time.
 TIME = "t"
 _DEGREE = 7  # of the polynomials of all laws

@@ -14,8 +14,6 @@ from linkwork.core.mechanism.description import Problems
 from linkwork.core.results import quantities
 from linkwork.core.results.quantity import Kind
 
-__all__ = ["read_outputs"]
-
 
 def read_outputs(
     formulas: Mapping[str, str],

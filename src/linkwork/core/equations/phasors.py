@@ -24,8 +24,6 @@ from linkwork.core.foundation.lanes import (
 from linkwork.core.foundation.precise import Precise, joined, sin_cos
 from linkwork.core.foundation.units import AngleUnit
 
-__all__ = ["Monomial", "PhasorReader"]
-
 
 @dataclass(frozen=True)
 class Monomial:

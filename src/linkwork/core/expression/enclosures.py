@@ -17,8 +17,6 @@ from linkwork.core.foundation.arrays import Array, BoolArray
 from linkwork.core.foundation.lanes import Arithmetic, Operand
 from linkwork.core.foundation.rounding import EPSILON
 
-__all__ = ["ENCLOSURES", "Enclosure", "Interval", "widened"]
-
 #: Vectorised libraries state errors of up to four units in the last place.
 _ULPS = 8.0
 _SMALLEST = 5e-324

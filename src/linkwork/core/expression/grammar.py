@@ -28,8 +28,6 @@ from linkwork.core.foundation.errors import ExpressionError, choices
 from linkwork.core.foundation.names import GREEK, canonical
 from linkwork.core.foundation.units import FORCES, LENGTHS, MASSES
 
-__all__ = ["CONSTANTS", "FUNCTIONS", "RESERVED", "number_end", "parse", "parse_equation"]
-
 #: Functions and their numbers of arguments (minimum, maximum).
 FUNCTIONS = {
     "sin": (1, 1), "cos": (1, 1), "tan": (1, 1), "asin": (1, 1), "acos": (1, 1),

@@ -28,22 +28,6 @@ from linkwork.core.foundation.lanes import (
     vector,
 )
 
-__all__ = [
-    "PI",
-    "E",
-    "Precise",
-    "acos",
-    "asin",
-    "chosen",
-    "exp",
-    "joined",
-    "log",
-    "phase",
-    "precise",
-    "sin_cos",
-    "sqrt",
-]
-
 _SPLITTER = 2.0**27 + 1.0
 _NOTHING = 1e-30
 _TERMS = 29  # of the series of sine and exponential, to 1e-33

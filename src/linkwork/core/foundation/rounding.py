@@ -4,24 +4,6 @@ from __future__ import annotations
 
 import numpy as np
 
-__all__ = [
-    "ALMOST_DOUBLE",
-    "ALMOST_REAL",
-    "CLOSER_TANGENT",
-    "EPSILON",
-    "EQUAL_ROWS",
-    "EXTENDED_EPSILON",
-    "FAR",
-    "LARGEST_POLISH",
-    "PRINTED_ANGLE",
-    "PROOF_SLACK",
-    "RANK_TOLERANCE",
-    "REGULAR_CONDITION",
-    "REST",
-    "SMALLEST_RATIO",
-    "UNIT_ROUNDOFF",
-]
-
 #: The distance from 1 to the next larger number, 2⁻⁵²: twice the unit roundoff.
 EPSILON = float(np.finfo(float).eps)
 #: The same of extended precision, where the processor computes with it.

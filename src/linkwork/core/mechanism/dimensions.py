@@ -16,8 +16,6 @@ from linkwork.core.foundation.precise import Precise, chosen
 from linkwork.core.foundation.units import AngleUnit
 from linkwork.core.foundation.values import as_told, plain_number
 
-__all__ = ["LARGEST", "Number", "Numbers"]
-
 #: A number, or a formula of the named dimensions.
 Number = float | int | str
 #: The largest length, mass or load: it keeps squares and quotients finite.

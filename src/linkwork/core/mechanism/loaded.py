@@ -14,8 +14,6 @@ from linkwork.core.mechanism.description import Description, Problems, check_ent
 from linkwork.core.mechanism.dimensions import LARGEST
 from linkwork.core.mechanism.machine import Gravity, Mass, Stop
 
-__all__ = ["LoadedBodies", "check_masses"]
-
 
 @dataclass(frozen=True, kw_only=True)
 class LoadedBodies(Description):

@@ -14,8 +14,6 @@ from linkwork.core.mechanism.dimensions import Number
 from linkwork.core.mechanism.loaded import LoadedBodies, check_masses
 from linkwork.core.mechanism.part.springs import Load
 
-__all__ = ["Loops", "PlainEquations"]
-
 
 @dataclass(frozen=True, kw_only=True)
 class _Equations(Description):

@@ -10,8 +10,6 @@ from linkwork.core.equations.model import LoopEquations, Term
 from linkwork.core.foundation.names import GROUND
 from linkwork.core.mechanism.skeleton import Rail
 
-__all__ = ["rails_of"]
-
 _MOST_LOOPS = 4  # up to so many loops are combined; of more, each is tried by itself
 _LEAST = 1e-12  # relative to the largest term: smaller ones are the rounding of a difference
 

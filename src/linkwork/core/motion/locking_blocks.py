@@ -23,8 +23,6 @@ from linkwork.core.numerics.decomposition import closure_of
 from linkwork.core.numerics.turning_point import turn_beyond
 from linkwork.core.table.loop_table import TableSplitter
 
-__all__ = ["Lock", "locks_ahead", "sound_nodes"]
-
 # Condition up to which a node is far enough from a dead point to begin the search for it. Nodes
 # must be proved up to 1e5 (motion.proving) and exist up to 3e6 (TrackOptions): a tenth of the first
 # leaves no doubt that this one is proved.

@@ -8,8 +8,6 @@ from linkwork.core.mechanism.loaded import LoadedBodies
 from linkwork.core.results.quantities.definition import Asked, Group
 from linkwork.core.results.quantities.registry import Quantities
 
-__all__ = ["bounded_quantity", "stop_problems"]
-
 
 def bounded_quantity(name: str, known: Quantities) -> Asked:
     """The quantity of positions that a stop bounds.

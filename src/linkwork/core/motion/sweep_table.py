@@ -19,8 +19,6 @@ from linkwork.core.motion.following import Drive
 from linkwork.core.motion.limits import BranchEnd
 from linkwork.core.numerics.system import SolvedRows
 
-__all__ = ["NamedEnd", "SweepTable"]
-
 _SAME_PLACE = 1e-11  # relative: values of the path so near to each other are one place
 
 

@@ -38,8 +38,6 @@ from linkwork.core.numerics.system import SolvedRows
 from linkwork.core.results.limit import Limit, LimitKind, OutputLimit
 from linkwork.core.results.motion import Motion
 
-__all__ = ["sweep", "sweep_rows"]
-
 _MOST_CROSSINGS = 64
 _ROUNDING = 1e-14  # of whole turns, which are no floats
 _SAME_EXTREME = 1e-6  # of the leading input: extremes nearer to each other are one

@@ -20,8 +20,6 @@ from linkwork.core.numerics.local_parametrization import (
 from linkwork.core.numerics.path_proof import ProvenPath, prove_path, prove_paths
 from linkwork.core.numerics.position_proof import expansions, prove, reach
 
-__all__ = ["ProvenCurve", "legs_are_proved", "prove_curve", "prove_curves", "same_solution"]
-
 _MOST_STEPS = 20_000  # of a proof: a length on its way to infinity takes steps without end
 _MOST_EXACT = 400  # of those with residuals that are rounded once, which take far longer
 

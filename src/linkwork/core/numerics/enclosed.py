@@ -22,8 +22,6 @@ from linkwork.core.foundation.rounding import PROOF_SLACK, UNIT_ROUNDOFF
 from linkwork.core.numerics.kantorovich import Radii
 from linkwork.core.numerics.system import System
 
-__all__ = ["Enclosed", "excluded"]
-
 #: Half widths of boxes in units of the usual weights: from far beyond them down to rounding.
 _SIZES = 4.0 ** -np.arange(-3.0, 27.0)
 _TWICE = 2.0  # times the error at the centre: room for what the slopes change

@@ -16,8 +16,6 @@ import numpy as np
 from linkwork.core.foundation.arrays import Array
 from linkwork.core.numerics.system import SmallSystem
 
-__all__ = ["Bending", "Fold", "FoldFamily", "locate_fold"]
-
 
 class Bending(SmallSystem, Protocol):
     """Equations that also know mixed second derivatives."""

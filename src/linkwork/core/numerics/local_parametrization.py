@@ -16,17 +16,6 @@ from linkwork.core.numerics.branch_tracking import InputPath, Node, node_at
 from linkwork.core.numerics.newton import sharp
 from linkwork.core.numerics.position_proof import expansions, prove, reach
 
-__all__ = [
-    "Parametrization",
-    "Parametrizations",
-    "apart",
-    "coincide",
-    "fastest_leader",
-    "near",
-    "same_position",
-    "whole_turns",
-]
-
 _KEPT = 64  # nodes: a place where curves begin is looked at several times
 _COINCIDE = 1e-6  # weighted: rounding of places that are ill-conditioned
 _NEAR = 1e-3  # weighted: positions further apart are not looked at

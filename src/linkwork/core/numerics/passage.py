@@ -32,8 +32,6 @@ from linkwork.core.numerics.change_point import (
 )
 from linkwork.core.numerics.newton import newton
 
-__all__ = ["Passage", "pass_change_points"]
-
 # of the path's size, to both sides, in this order; the last ones for blocks that are driven slowly
 _HALVES = (1e-2, 3e-3, 1e-3, 1e-4, 1e-5, 1e-6, 3e-2, 1e-1)
 _STEPS = (4, 16)  # in which a block that does not cross is followed; more where it turns quickly

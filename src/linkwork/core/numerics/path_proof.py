@@ -13,7 +13,6 @@ from linkwork.core.foundation.rounding import UNIT_ROUNDOFF
 from linkwork.core.foundation.statuses import CONVERGED
 from linkwork.core.numerics.block_solver import FEW, BlockSolver
 from linkwork.core.numerics.branch_tracking import InputPath, quintic
-from linkwork.core.numerics.few_steps import StepProver, radii_of
 from linkwork.core.numerics.position_proof import (
     Place,
     Proof,
@@ -25,6 +24,7 @@ from linkwork.core.numerics.position_proof import (
     steps_connected,
     steps_disproved,
 )
+from linkwork.core.numerics.proved_rows import StepProver, radii_of
 from linkwork.core.numerics.system import SolvedRows
 
 _HALVINGS = 45  # of one step, at most

@@ -26,20 +26,6 @@ from linkwork.core.numerics.enclosed import Enclosed
 from linkwork.core.numerics.kantorovich import Expansion, Majorant, Radii, expansion, weighted_radii
 from linkwork.core.numerics.system import Recorded
 
-__all__ = [
-    "Place",
-    "Proof",
-    "Reach",
-    "expansions",
-    "prove",
-    "prove_block",
-    "reach",
-    "roots_proved",
-    "rounding_of_inputs",
-    "steps_connected",
-    "steps_disproved",
-]
-
 
 @dataclass(frozen=True, eq=False)
 class RecordedPlace:

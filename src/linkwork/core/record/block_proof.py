@@ -16,8 +16,6 @@ from linkwork.core.foundation.rounding import PRINTED_ANGLE, PROOF_SLACK, UNIT_R
 from linkwork.core.record.closure import Closure, Phase, solve_linear
 from linkwork.core.record.recorder import Recorder, Value
 
-__all__ = ["BlockProof", "BlockRadii", "Constants"]
-
 _PHASOR = 14.0  # roundings in one term: sine and cosine (2.5 each), products
 _ROOM = 1e-9  # 1 - Z below which nothing is proved
 _TINY = 1e-300

@@ -21,8 +21,7 @@ from linkwork.core.foundation.rounding import FAR, SMALLEST_RATIO
 from linkwork.core.foundation.statuses import Status
 from linkwork.core.record.block_proof import BlockProof
 from linkwork.core.record.closure import BlockPart, Closure, Row, solve_linear
-from linkwork.core.record.kept_code import KeptCode
-from linkwork.core.record.python_text import ARRAYS, FLOATS, Form, Statements, local_name
+from linkwork.core.record.python_text import ARRAYS, FLOATS, Form, KeptCode, Statements, local_name
 from linkwork.core.record.recorder import Op, Recorder, Value
 from linkwork.core.table.loop_table import LoopTable
 from linkwork.core.table.rows import LawRow

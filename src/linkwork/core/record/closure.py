@@ -18,16 +18,6 @@ from linkwork.core.record.recorder import Recorder, Value
 from linkwork.core.table.loop_table import LoopTable
 from linkwork.core.table.rows import LawRow
 
-__all__ = [
-    "BlockPart",
-    "Closure",
-    "Linear",
-    "Phase",
-    "cosine_and_sine",
-    "phasor_name",
-    "solve_linear",
-]
-
 Pair = tuple[Value | float, Value | float]
 Moves = Mapping[int, Value | float]
 #: Variables with their weights, one twice only where adding these would round; empty for a fixed

@@ -1,19 +1,29 @@
 """Recorded arithmetic written as Python statements, for floats or for arrays.
 
 A value that is used once is written where it is used. Arrays that are no longer needed give their
-name, and so their memory, to the next one.
+name, and so their memory, to the next one. Code is kept in the user's cache: writing it takes some
+milliseconds a shape.
 """
 
 from __future__ import annotations
 
+import hashlib
+import importlib.util
+import marshal
 import math
+import sys
 from collections.abc import Callable, Iterable, Mapping, Sequence
+from contextlib import suppress
 from dataclasses import dataclass
+from functools import cache
+from pathlib import Path
 from types import CodeType
 from typing import Any
 
 import numpy as np
 
+from linkwork.core.foundation.errors import InputError
+from linkwork.core.foundation.files import cache_folder, save_bytes
 from linkwork.core.record.recorder import Op, Recorder
 
 _LONGEST = 120  # characters of an expression that is written where it is used
@@ -211,3 +221,59 @@ def _number(x: float) -> str:
     if math.isinf(x):
         return "inf" if x > 0.0 else "(-inf)"
     return repr(x) if x >= 0.0 and math.copysign(1.0, x) > 0.0 else f"({x!r})"
+
+
+# ----------------------------------------------------------------------
+# Code kept in the user's cache.
+
+
+_DIGEST = 32  # bytes
+
+
+@cache
+def _version() -> bytes:
+    """A digest of all that decides how functions are written: code of another one is not used."""
+    digest = hashlib.sha256(importlib.util.MAGIC_NUMBER)
+    for source in sorted(Path(__file__).parent.glob("*.py")):
+        digest.update(source.read_bytes())
+    return digest.digest()
+
+
+class KeptCode:
+    """The code of a shape's functions; ``key`` tells shapes apart."""
+
+    def __init__(self, key: str) -> None:
+        self._key = key
+        self._path: Path | None = None
+        self._codes: dict[str, CodeType] | None = None
+
+    def get(self, name: str, write: Callable[[], str]) -> CodeType:
+        """The code of a function; ``write`` gives its source if it is not kept yet."""
+        if self._codes is None:
+            self._codes = self._read()
+        code = self._codes.get(name)
+        if code is None:
+            code = self._codes[name] = compile(write(), f"<{name}>", "exec")
+            self._keep()
+        return code
+
+    def _read(self) -> dict[str, CodeType]:
+        if sys.platform == "emscripten":  # nothing lasts longer than the page
+            return {}
+        with suppress(OSError, RuntimeError):  # RuntimeError: no home
+            digest = hashlib.sha256(_version() + self._key.encode()).hexdigest()[:_DIGEST]
+            self._path = cache_folder("functions") / f"{digest}.bin"
+            held = self._path.read_bytes()
+            check, data = held[:_DIGEST], held[_DIGEST:]
+            if hashlib.sha256(data).digest() == check:
+                found: dict[str, CodeType] = marshal.loads(data)
+                return found
+        return {}
+
+    def _keep(self) -> None:
+        if self._path is None:
+            return
+        data = marshal.dumps(self._codes)
+        with suppress(OSError, InputError):
+            self._path.parent.mkdir(parents=True, exist_ok=True)
+            save_bytes(hashlib.sha256(data).digest() + data, self._path)

@@ -11,8 +11,6 @@ from linkwork.core.foundation.errors import internal
 from linkwork.core.foundation.statuses import NewtonTrouble
 from linkwork.core.results.quantity import Kind, Units
 
-__all__ = ["Failure", "Remedy"]
-
 _MOST_REMEDIES = 3
 _MOST_CONFIGURATIONS = 4
 _MOST_VALUES = 4

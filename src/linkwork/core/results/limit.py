@@ -11,8 +11,6 @@ from linkwork.core.foundation.containers import FrozenDict
 from linkwork.core.foundation.names import short_number
 from linkwork.core.foundation.statuses import Status
 
-__all__ = ["Limit", "LimitKind", "OutputLimit"]
-
 
 class LimitKind(Enum):
     """The kind of a limit of a branch; the value is a sentence.

@@ -10,8 +10,6 @@ from linkwork.core.foundation.errors import internal
 from linkwork.core.mechanism.skeleton import Skeleton
 from linkwork.core.results.quantity import Units
 
-__all__ = ["LinkEnd", "NearestAssembly"]
-
 
 @dataclass(frozen=True, kw_only=True)
 class LinkEnd:

@@ -12,8 +12,6 @@ from linkwork.core.foundation.errors import UnknownNameError
 from linkwork.core.foundation.names import as_name
 from linkwork.core.foundation.units import AngleUnit
 
-__all__ = ["Kind", "Quantity", "Rate", "Units"]
-
 
 class Kind(Enum):
     """What a number measures."""

@@ -9,8 +9,6 @@ from linkwork.core.foundation.containers import read_only
 from linkwork.core.foundation.errors import internal
 from linkwork.core.results.quantity import Quantity
 
-__all__ = ["Series"]
-
 
 @internal("quantity")
 @dataclass(frozen=True, kw_only=True, eq=False)

@@ -6,8 +6,6 @@ from dataclasses import dataclass
 
 from linkwork.core.foundation.arrays import ComplexArray
 
-__all__ = ["LoopVector", "MovingLoop", "MovingVector", "VectorLoop"]
-
 
 @dataclass(frozen=True, kw_only=True)
 class LoopVector:

@@ -22,8 +22,6 @@ from linkwork.core.foundation.arrays import Array, ComplexArray, IndexArray, tal
 from linkwork.core.foundation.rounding import UNIT_ROUNDOFF
 from linkwork.core.table.rows import PhasorRows
 
-__all__ = ["Curvature", "PhaseGroups"]
-
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Curvature:

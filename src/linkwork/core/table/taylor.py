@@ -16,8 +16,6 @@ from linkwork.core.foundation.errors import InputError
 from linkwork.core.table.loop_table import LoopTable
 from linkwork.core.table.rows import LawRow, PhasorRows, Piecewise
 
-__all__ = ["law_series", "phasor_series", "variable_series"]
-
 
 def variable_series(table: LoopTable, v: Array, inputs: Array) -> Array:
     """The coefficients of all variables, (K + 1, B, N); NaN at singular positions.

@@ -32,8 +32,6 @@ from linkwork.core.mechanism.part.index import PARTS
 from linkwork.core.mechanism.part.springs import Load
 from linkwork.core.mechanism.varied_numbers import CLEARANCES, TOLERANCES
 
-__all__ = ["EQUATIONS", "FORMAT", "FORMS", "LINKAGE", "LOOPS", "Form", "form_of"]
-
 #: The version of the file format that this package reads and writes.
 FORMAT = 1
 

@@ -14,8 +14,6 @@ from linkwork.core.foundation.errors import InputError, MechanismFileError, Prob
 from linkwork.core.foundation.values import as_told
 from linkwork.core.textfile.toml_text import LARGEST, bytes_of, text_of
 
-__all__ = ["LONGEST", "fragment_of", "is_link", "link_of", "source_text", "text_of_link"]
-
 #: Most characters of a fragment: an argument of a command may have 131,072 bytes on Linux.
 LONGEST = 100_000
 _VERSION = b"1"

@@ -28,8 +28,6 @@ from linkwork.core.foundation.values import (
 )
 from linkwork.core.textfile.keys import FORMS, Form
 
-__all__ = ["json_schema", "schema_of", "schema_text"]
-
 _DRAFT = "https://json-schema.org/draft/2020-12/schema"
 _FORMULA = {"type": "string", "minLength": 1}
 _SHARED: dict[str, dict[str, Any]] = {

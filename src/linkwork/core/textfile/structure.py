@@ -32,8 +32,6 @@ from linkwork.core.foundation.values import (
 from linkwork.core.textfile.keys import FORMS, Form
 from linkwork.core.textfile.toml_text import KeyPath
 
-__all__ = ["Structure"]
-
 _LONGEST_SHOWN = 40  # characters of a value in a message
 
 

@@ -9,8 +9,6 @@ from linkwork.core.foundation.errors import InputError, UnknownNameError, key_te
 from linkwork.core.foundation.names import canonical
 from linkwork.core.textfile.toml_text import data_of
 
-__all__ = ["TextEdits"]
-
 #: Keys, and indices in lists: ``("points", "A", 0)``, ``("input", 0, "from")``.
 KeyPath = tuple[str | int, ...]
 

@@ -19,7 +19,6 @@ from linkwork.core.textfile.keys import FORMAT
 if TYPE_CHECKING:
     from tomlkit import TOMLDocument
 
-__all__ = ["part_lines", "save", "write_tables", "write_text"]
 
 _Tables = dict[str, dict[str, Any] | list[dict[str, Any]]]
 

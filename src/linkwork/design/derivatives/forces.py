@@ -41,8 +41,6 @@ from linkwork.forces.reactions.geometry import Geometry
 from linkwork.forces.reactions.parts import apply_load, join_loads, line_of
 from linkwork.forces.reactions.system import NO_WORK, joint_forces, totals
 
-__all__ = ["LoadedRows"]
-
 
 class TapedGeometry(Geometry):
     """Places and rates on a tape; derivatives by each input as lists of (B,)."""

@@ -17,8 +17,6 @@ from linkwork.core.foundation.containers import FrozenDict
 from linkwork.core.foundation.errors import ExpressionError, InputError
 from linkwork.core.foundation.units import AngleUnit
 
-__all__ = ["ANGLE", "LENGTH", "PURE", "Degree", "Degrees", "Literal"]
-
 _ANGLE_OF = ("sin", "cos", "tan", "cis")
 _TO_ANGLE = ("asin", "acos", "atan")
 _ALIKE = ("abs", "hypot", "min", "max", "atan2")

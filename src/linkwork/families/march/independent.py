@@ -41,8 +41,6 @@ from linkwork.families.march.step_trial import (
     update_weights,
 )
 
-__all__ = ["march"]
-
 say_that_it_compiles("independent")
 
 _NO_TASK_YET, _NO_TASK_LEFT = -2, -1

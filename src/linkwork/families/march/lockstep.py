@@ -40,8 +40,6 @@ from linkwork.families.march.step_trial import (
     update_weights,
 )
 
-__all__ = ["in_step"]
-
 say_that_it_compiles("lockstep")
 
 _LINE = 64  # bytes of a cache line

@@ -301,7 +301,7 @@ class SweepKernel:
             march_in_turn(family, space, node, left, table, found, none)
         return done | begun
 
-    def prepare_single(
+    def prepare_single(  # noqa: V105  # for tests and benchmarks of rows side by side
         self,
         coefficients: Mapping[str, Array],
         guess: Array,

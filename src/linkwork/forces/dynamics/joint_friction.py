@@ -26,8 +26,6 @@ from linkwork.forces.reactions.free_bodies import Act, FreeBodies, balance
 from linkwork.forces.reactions.parts import join_parts
 from linkwork.forces.reactions.system import doubtful_followers
 
-__all__ = ["JointFriction", "Rubbing"]
-
 #: Positions with derivatives at values of the leader (B,), in any order.
 Rows = Callable[[Array], SolvedRows]
 

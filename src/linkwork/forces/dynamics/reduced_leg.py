@@ -20,8 +20,6 @@ from linkwork.forces.dynamics.reduction import FAR, NEAR, Reduction, State
 from linkwork.forces.reactions.applied import AppliedLoads
 from linkwork.forces.reactions.geometry import Geometry
 
-__all__ = ["ReducedLeg"]
-
 _LOOKS, _POLE = 257, 1e6  # places at which formulas are tried; times their usual value
 _ZOOMS, _ZOOM = 13, 17  # rounds down to rounding, and the places of each
 _MEETS = 1e-10  # of the longest link: ends of a spring that are nearer meet

@@ -28,8 +28,6 @@ from linkwork.forces.reactions.geometry import Geometry
 from linkwork.forces.reactions.parts import apply_load, join_loads
 from linkwork.forces.reactions.switches import held_switches, load_switches, switch_margins
 
-__all__ = ["FAR", "NEAR", "Displaced", "Forcing", "Reduction", "State"]
-
 
 class Displaced(Geometry):
     """Positions with derivatives by the leader, which counts as the one input."""

@@ -19,16 +19,6 @@ from linkwork.core.motion.stop_quantities import bounded_quantity
 from linkwork.core.results.motion import Motion
 from linkwork.forces.dynamics.events import Bound
 
-__all__ = [
-    "bounds_of",
-    "check_loaded",
-    "check_masses_move",
-    "model_name",
-    "start_speeds",
-    "straight_or_stop",
-    "with_stops",
-]
-
 _MASSLESS = 1e-12  # of the largest eigenvalue of the matrix of masses: none
 
 

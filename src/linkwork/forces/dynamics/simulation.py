@@ -32,8 +32,6 @@ from linkwork.forces.dynamics.simulated import (
 )
 from linkwork.forces.dynamics.travel import Travel
 
-__all__ = ["Start", "simulate", "start_of"]
-
 _ROWS = 400
 _MOST_ROWS = 10_000_000
 _LEAST = 1e-100  # seconds: the square of a short step does not vanish

@@ -11,8 +11,6 @@ from linkwork.forces.dynamics.collocation import Step, shorter_step, try_step
 from linkwork.forces.dynamics.events import Event, Pace, first_event, just_behind, margins_on
 from linkwork.forces.dynamics.rest import Passage, Support, first_start, just_ahead
 
-__all__ = ["Travel"]
-
 _SHORTEST = 1e-14  # of the whole time: a shorter step makes no way
 _FIRST = 0.02  # of the time in which the leg would be passed: the first step
 _MOST_TRIES = 3  # to find the signs of friction at the beginning of a step

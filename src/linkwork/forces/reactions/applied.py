@@ -23,8 +23,6 @@ from linkwork.core.mechanism.loaded import LoadedBodies
 from linkwork.core.mechanism.machine import Mass
 from linkwork.forces.reactions.geometry import Geometry
 
-__all__ = ["AppliedLoads", "Body", "load_formulas", "time_of"]
-
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Body:

@@ -15,8 +15,6 @@ from linkwork.core.motion.model import Model, leading_input
 from linkwork.core.results.quantities.definition import Solved
 from linkwork.core.results.quantity import Kind
 
-__all__ = ["Geometry"]
-
 
 class Geometry:
     """A mechanism's points and links in B rows, each computed once.

@@ -23,8 +23,6 @@ from linkwork.synthesis.atlas.path_atlas import (
     read_atlas,
 )
 
-__all__ = ["NearPath", "PathAtlas"]
-
 _FEWEST = 5  # points of a curve
 
 

@@ -27,8 +27,6 @@ from linkwork.core.numerics.local_parametrization import coincide, same_position
 from linkwork.core.numerics.newton import NewtonOptions
 from linkwork.synthesis.defects.verdicts import Defect, DefectKind
 
-__all__ = ["defects_by_circuits"]
-
 # of a point's way: a position that is missed by less lies on the branch, and other branches are
 # farther away, unless the input is nearer than the square of this to a dead point
 _MISSED = 1e-6

@@ -10,8 +10,6 @@ from linkwork.synthesis.loops.driven_loop import Travel, pivots_at
 from linkwork.synthesis.loops.limits import DrivenLoops, cross, guide_speeds, meeting
 from linkwork.synthesis.tasks.conditions import Wishes, distances_to_segments
 
-__all__ = ["meets_obstacle"]
-
 _PIECES = 64  # of a driven range, to begin with
 _HALVINGS = 14  # pieces that are still in doubt then count as contacts
 _MOST_PIECES = 200_000

@@ -17,8 +17,6 @@ from linkwork.core.foundation.arrays import Array, ComplexArray, IndexArray
 from linkwork.core.foundation.units import FULL_TURN, arc_in_order
 from linkwork.synthesis.improvement.curves import INPUT, CouplerCurves, CurveGoal, FourBarCurves
 
-__all__ = ["CurveStarts", "best_starts", "random_loops"]
-
 _SAMPLES = 72  # of a curve: five degrees
 _PART = 128  # curves compared at a time
 _SHARES = (0.08, 0.15, 0.25, 0.4, 0.6, 0.8)  # of the arc length, for a part of a curve

@@ -25,15 +25,6 @@ from linkwork.core.foundation.rounding import RANK_TOLERANCE, UNIT_ROUNDOFF
 from linkwork.synthesis.poses.dyad_set import DyadSet, PoseSet
 from linkwork.synthesis.poses.dyads import NormalPoses, Refusal, solve_on_lines
 
-__all__ = [
-    "Arc",
-    "CentrePoints",
-    "centre_points",
-    "dyads_with_pivots",
-    "sampled_dyads",
-    "sliding_dyad",
-]
-
 _SAMPLES = 48  # directions over all arcs
 _THROUGH = np.exp(0.25j * np.pi * np.arange(4))  # directions of lines through a given pivot
 _OWN_POLE = 1e-7  # of the size of the task: the pencil's own pole

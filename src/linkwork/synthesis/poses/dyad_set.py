@@ -12,9 +12,6 @@ from linkwork.synthesis.loops.candidates import Candidates, LoopKind
 from linkwork.synthesis.loops.limits import cross, dot
 from linkwork.synthesis.poses.dyads import KINDS, Dyads, Refusal
 
-__all__ = ["DyadSet", "PoseSet", "pair_dyads", "pair_guides"]
-
-
 #: The mechanisms of pairs of KINDS, by their places.
 _MADE = {
     (0, 0): LoopKind.FOUR_BAR, (0, 1): LoopKind.SLIDER_CRANK, (0, 2): LoopKind.INVERTED,

@@ -19,8 +19,6 @@ from linkwork.synthesis.loops.candidates import Candidates, Drive, LoopKind
 from linkwork.synthesis.loops.limits import cross, dot, meeting
 from linkwork.synthesis.tasks.task import Task
 
-__all__ = ["Design", "linkage_of"]
-
 _STEP = math.pi / 180.0  # of an angle [rad]
 _STEPS = 100  # of a displacement
 _ON_LINE = 1e-9  # of a coupler's length: a pivot on its line

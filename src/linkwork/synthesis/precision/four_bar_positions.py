@@ -12,8 +12,6 @@ from linkwork.core.foundation.arrays import Array, BoolArray, ComplexArray, Inde
 from linkwork.synthesis.precision.positions import PrecisionPositions
 from linkwork.synthesis.precision.proofs import ProvedLinkages
 
-__all__ = ["FourBarPositions"]
-
 
 @dataclass(frozen=True, kw_only=True, eq=False, repr=False)
 class FourBarPositions:

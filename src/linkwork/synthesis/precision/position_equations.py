@@ -18,8 +18,6 @@ from dataclasses import dataclass
 from linkwork.synthesis.precision.positions import PrecisionPositions
 from linkwork.synthesis.precision.problem import ComplexPlace, ProductSums, ProductWriter
 
-__all__ = ["HeldValue", "PositionEquations", "position_equations"]
-
 #: A coordinate that keeps a value: its place among x, [a], y, [b], seen from the first position
 #: [length].
 HeldValue = tuple[int, float]

@@ -10,8 +10,6 @@ import numpy as np
 from linkwork.core.foundation.arrays import Array, ComplexArray, IndexArray
 from linkwork.synthesis.precision.problem import PrecisionProblem
 
-__all__ = ["GivenLength", "PrecisionPositions"]
-
 
 @dataclass(frozen=True, order=True)
 class GivenLength:

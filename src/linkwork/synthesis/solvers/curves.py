@@ -25,8 +25,6 @@ from linkwork.synthesis.tasks.conditions import LENGTHS, Wishes
 from linkwork.synthesis.tasks.curve_file import FEWEST
 from linkwork.synthesis.tasks.task import Task
 
-__all__ = ["curve_goal_of", "solve_curve"]
-
 _STARTS = 1000
 _USUAL = 12.0  # largest distances of a point from their mean: how long links may be without a wish
 _CLOSES = 2.0  # largest steps: how near the ends of a closed curve are

@@ -24,8 +24,6 @@ from linkwork.synthesis.solvers.result import Found
 from linkwork.synthesis.tasks.conditions import Wishes
 from linkwork.synthesis.tasks.task import Task
 
-__all__ = ["USUAL_RATIO", "freudenstein", "has_usual_ratio", "solve_function"]
-
 #: Of the longest to the shortest link of fits without wishes for lengths: links of one drawing.
 USUAL_RATIO = 20.0
 

@@ -39,8 +39,6 @@ from linkwork.synthesis.solvers.swept_design import SweptDesign
 from linkwork.synthesis.tasks.conditions import Wishes, outside_range
 from linkwork.synthesis.tasks.task import Task
 
-__all__ = ["improve_description", "improve_mechanism", "mechanism_of"]
-
 _ROWS = 360  # of a turn, unless the mechanism's table has steps
 _PARTS = 100  # of a range of lengths
 

@@ -40,8 +40,6 @@ from linkwork.synthesis.solvers.result import Found
 from linkwork.synthesis.tasks.conditions import Wishes
 from linkwork.synthesis.tasks.task import Task
 
-__all__ = ["poses_of", "solve_motion"]
-
 _PIVOTS = {2: 12, 3: 60}  # of a family through so many poses; two leave further freedom
 _ON_CURVE = 1e-6  # relative to the size of the task: a given pivot on the centre-point curve
 _EXACT = 1e-12  # the same: pivots on it to rounding

@@ -22,8 +22,6 @@ from linkwork.synthesis.solvers.result import Found
 from linkwork.synthesis.tasks.conditions import Wishes
 from linkwork.synthesis.tasks.task import MECHANISMS, Task
 
-__all__ = ["solve_path"]
-
 _SAMPLES = 8  # tasks at once, where conditions are missing,
 _MOST = 64  # and at most so many while fewer designs are sound than are to be delivered
 _PATHS, _SLOW_PATHS = 4000, 500  # followed before the last ones, with Numba and without: a second

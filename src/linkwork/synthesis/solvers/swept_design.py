@@ -31,8 +31,6 @@ from linkwork.synthesis.tasks.conditions import (
 )
 from linkwork.synthesis.tasks.task import Task
 
-__all__ = ["SweptDesign", "wishes_in_motion"]
-
 
 @internal("swept", "description", "improved")
 @dataclass(frozen=True, kw_only=True, eq=False, repr=False)

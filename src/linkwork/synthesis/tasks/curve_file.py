@@ -18,8 +18,6 @@ from linkwork.core.foundation.rounding import EQUAL_ROWS
 from linkwork.core.foundation.values import as_told
 from linkwork.core.textfile.toml_text import bytes_of, text_of
 
-__all__ = ["FEWEST", "LARGEST", "Curve", "out_of_bounds", "read_curve"]
-
 _COLUMNS = ("x", "y", "input")
 FEWEST = 5  # points of a curve
 #: Powers of larger numbers are beyond floating point, and those of the inverse of smaller ones.

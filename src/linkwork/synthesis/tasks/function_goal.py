@@ -27,8 +27,6 @@ from linkwork.core.foundation.units import FULL_TURN, AngleUnit
 from linkwork.core.foundation.values import as_told
 from linkwork.synthesis.improvement.settings import Problems
 
-__all__ = ["LOOP_PAIRS", "ExactPairs", "FunctionGoal"]
-
 _VARIABLE = "x"
 _ANGLES = ("rocker",)  # outputs that are angles
 _LARGEST_STEP = 0.5  # of all values: between neighbours it is a pole

@@ -34,8 +34,6 @@ from linkwork.synthesis.tasks.function_goal import LOOP_PAIRS, FunctionGoal
 from linkwork.synthesis.tasks.task import MECHANISMS, WATT_II, WATT_PAIRS, Task
 from linkwork.synthesis.tasks.task_keys import TASK, TURNS_FULLY
 
-__all__ = ["located_task_error", "read_task", "read_task_text", "task_of_tables"]
-
 
 def read_task(path: Path | str) -> Task:
     """Read the task in a file.

@@ -19,8 +19,6 @@ from linkwork.core.results.quantities.rows import TRANSMISSION_ANGLE
 from linkwork.core.textfile.keys import FORMAT, Form
 from linkwork.synthesis.improvement.settings import FITS, WHOLE
 
-__all__ = ["KINDS", "TASK", "TURNS_FULLY"]
-
 KINDS = ("motion", "path", "mixed", "function", "improve")
 TURNS_FULLY = "turns fully"
 

@@ -23,16 +23,6 @@ from linkwork.writers.charts.circuits import branch_chart, circuit_chart
 from linkwork.writers.charts.kinds import motion_chart, polar_chart, transmission_chart
 from linkwork.writers.charts.plane import hodograph_chart, path_chart
 
-__all__ = [
-    "CIRCUIT_KINDS",
-    "MOTION_KINDS",
-    "PlotKind",
-    "circuits_plot",
-    "motion_plot",
-    "plot_circuits",
-    "plot_motion",
-]
-
 
 class PlotKind(Enum):
     """Kinds of plots; the values are those of ``kind=`` and ``--kind``."""

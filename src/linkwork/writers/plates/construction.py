@@ -43,8 +43,6 @@ from linkwork.writers.plates.wheels import (
     wheel_plate,
 )
 
-__all__ = ["Construction"]
-
 _GEAR = 0.8  # of a gear's radius: bars this wide leave room for a pin and a fastener
 
 

@@ -20,11 +20,6 @@ from linkwork.core.mechanism.skeleton import Skeleton
 from linkwork.writers.plates.outlines import Outline, shapely
 from linkwork.writers.plates.plate import Sizes
 
-__all__ = [
-    "FEWEST", "STEPS", "GearMesh", "Wheel", "gear_meshes", "involute_outline", "polygons",
-    "touches",
-]  # fmt: skip
-
 #: Teeth of gears given by radii, at least: no undercut at 20 degrees.
 FEWEST = 18
 _LARGEST_RATIO = 1000  # of whole numbers that stand for a ratio of radii

@@ -25,8 +25,6 @@ from linkwork.writers.report.document import (
     printed,
 )
 
-__all__ = ["docx_bytes", "docx_package"]
-
 _MATH = "http://schemas.openxmlformats.org/officeDocument/2006/math"
 _DATE = (1980, 1, 1, 0, 0, 0)  # the first that archives can have
 _SMALL, _CODE = 8.5, 8  # font sizes [pt]

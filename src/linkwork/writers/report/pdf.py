@@ -24,8 +24,6 @@ from linkwork.writers.report.document import (
     typst_terms,
 )
 
-__all__ = ["pdf_bytes", "typst_package", "typst_text"]
-
 _PREAMBLE = """\
 #set document(title: TITLE, author: AUTHOR, date: none)
 #set page(paper: "a4", margin: (x: 20mm, y: 22mm), numbering: "1 / 1")

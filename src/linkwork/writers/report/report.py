@@ -35,8 +35,6 @@ from linkwork.writers.report.sections import (
     versions,
 )
 
-__all__ = ["FORMATS", "WrittenReport", "check_report_file", "document_of", "report_of"]
-
 #: Formats of reports by suffix.
 FORMATS = (".html", ".pdf", ".docx", ".md")
 

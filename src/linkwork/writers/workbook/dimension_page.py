@@ -17,8 +17,6 @@ from linkwork.writers.formulas.traced import Dimension
 from linkwork.writers.workbook.book import CYCLE, DIMENSIONS, FIRST, Book, cached, column_name
 from linkwork.writers.workbook.layout import print_on_one_page
 
-__all__ = ["input_table", "write_dimensions"]
-
 _CLOSED = 1e-9  # of the longest link: a row with larger equation errors does not close
 _TOP = 4  # rows above the sections
 _EVEN = 1e-12  # of the largest value: rounding of an evenly spaced table

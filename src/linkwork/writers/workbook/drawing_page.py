@@ -13,8 +13,6 @@ from linkwork.core.equations.compiling import coordinate_name
 from linkwork.writers.workbook.book import CYCLE, FIRST, Book, cached, chart_text, column_name
 from linkwork.writers.workbook.layout import print_on_one_page
 
-__all__ = ["has_drawing", "write_drawing"]
-
 SHEET = "Drawing"
 _SIDE = 640  # size of the chart [pixels]
 _ROUND = 36  # points of a circle

@@ -21,8 +21,6 @@ from linkwork.writers.workbook.load_cells import LoadCells
 from linkwork.writers.workbook.parts import contacts_of, join_links
 from linkwork.writers.workbook.reactions import Reactions
 
-__all__ = ["EQUILIBRIUM", "write_equilibrium"]
-
 EQUILIBRIUM = "Equilibrium"
 _ROWS = ("force x", "force y", "moment")
 

@@ -20,8 +20,6 @@ from linkwork.writers.workbook.layout import print_table
 from linkwork.writers.workbook.load_cells import LoadCells
 from linkwork.writers.workbook.rates import partial_key
 
-__all__ = ["ForceColumns", "write_forces"]
-
 _WIDTH = 14
 _SPINS = ((1, "ω", "rad/s"), (2, "α", "rad/s²"))
 _SPAN = "((x1-x0)^2+(y1-y0)^2)"

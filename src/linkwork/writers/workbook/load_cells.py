@@ -25,8 +25,6 @@ from linkwork.writers.workbook.book import Book
 from linkwork.writers.workbook.layout import print_on_one_page
 from linkwork.writers.workbook.parts import numbers_of
 
-__all__ = ["LOADS", "LoadCells", "force_problem", "write_loads"]
-
 LOADS = "Loads"
 _DOWN = -math.pi / 2.0
 

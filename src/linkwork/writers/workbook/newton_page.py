@@ -16,8 +16,6 @@ from linkwork.writers.formulas.closure_formulas import BlockFormulas, CellFormul
 from linkwork.writers.workbook.book import CYCLE, FIRST, NEWTON, Book, apart, cached, column_name
 from linkwork.writers.workbook.layout import PRINTED, print_table
 
-__all__ = ["NewtonColumns", "correction", "planned_newton", "write_newton"]
-
 _MOST_COLUMNS = 16_384
 _SMALL = 1e-14  # sum of squares of weighted corrections below which a row has converged
 

@@ -20,8 +20,6 @@ from linkwork.writers.workbook.acting import (
     opposite,
 )
 
-__all__ = ["Reactions"]
-
 
 @dataclass
 class Reactions:

@@ -45,8 +45,6 @@ from linkwork.writers.workbook.rates import (
     write_velocities,
 )
 
-__all__ = ["WrittenWorkbook", "check_xlsxwriter", "workbook_of"]
-
 _MOST_ROWS = 20_000
 _MOST_CELLS = 2_000_000
 _CYCLE, _NEWTON, _SHEETS = 0.1, 0.4, 0.55  # finished fractions after sheets; then the file

@@ -20,9 +20,6 @@ from linkwork.core.mechanism.part.rolling import Rolling
 from linkwork.core.mechanism.part.springs import Load, Spring
 from linkwork.core.mechanism.part.weld import Weld
 
-__all__ = ["PARTS", "JoinedBodies", "open_room"]
-
-
 if TYPE_CHECKING:
     from linkwork.contacts.cams import Cam
     from linkwork.contacts.curves import Curve, NoncircularGear

@@ -25,8 +25,6 @@ from linkwork.core.mechanism.part.part import (
     sliding_block,
 )
 
-__all__ = ["Rolling", "RollingLine"]
-
 
 @dataclass(frozen=True, kw_only=True)
 class RollingLine(Figure):

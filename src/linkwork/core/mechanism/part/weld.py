@@ -21,8 +21,6 @@ from linkwork.core.mechanism.part.part import (
     turning_links,
 )
 
-__all__ = ["RigidJoint", "Weld"]
-
 
 @dataclass(frozen=True, kw_only=True)
 class RigidJoint(Figure):

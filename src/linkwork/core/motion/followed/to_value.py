@@ -22,8 +22,6 @@ from linkwork.core.results.failure import Failure
 from linkwork.core.results.limit import Limit
 from linkwork.core.results.position import Certificate
 
-__all__ = ["OutOfReach", "follow_to_value"]
-
 
 @dataclass(frozen=True, kw_only=True)
 class OutOfReach:

@@ -7,8 +7,6 @@ from collections.abc import Iterator
 from linkwork.core.results.check import BlockSummary, CheckReport, Classification, roman
 from linkwork.core.results.listing.motion_listing import Column, redundant_lines, significant
 
-__all__ = ["check_fields", "classification_fields", "measured_part_columns"]
-
 
 def check_fields(report: CheckReport) -> Iterator[tuple[str, str]]:
     """Parts, equations, unknowns, inputs, blocks, mobility, chain and type."""
