@@ -43,7 +43,7 @@ export interface LimitMark {
   readonly text: string;
 }
 
-/** One displayed circuit or branch. `order` are the found rows in the order of the motion; `closed`: the first follows the last. `speed` is that of the leading input, 0 if it has none; `backwards`: its arrow points towards smaller values. `view` is the extent of its drawing, as that of the page. */
+/** One displayed circuit or branch. `order` are the solved rows in the order of the motion; `closed`: the first follows the last. `speed` is that of the leading input, 0 if it has none; `backwards`: its arrow points towards smaller values. `view` is the extent of its drawing, as that of the page. */
 export interface MotionData {
   readonly name: string;
   readonly summary: string;
@@ -75,7 +75,7 @@ export interface MotionNumber {
   readonly value: number | null;
 }
 
-/** Numbers of the found rows: multiples of `step`, differenced `order` times, as zigzag integers of seven bits per byte, in base64. Order -1: plain little-endian floats of eight bytes; -2: of four. `gaps` are indices of rows without a number, such as derivatives at dead points; plain floats have NaN there. */
+/** Numbers of the solved rows: multiples of `step`, differenced `order` times, as zigzag integers of seven bits per byte, in base64. Order -1: plain little-endian floats of eight bytes; -2: of four. `gaps` are indices of rows without a number, such as derivatives at dead points; plain floats have NaN there. */
 export interface PackedColumn {
   readonly step: number;
   readonly order: number;

@@ -150,10 +150,10 @@ def defect_campaign(part: int, count: int) -> tuple[Counter[str], list[str]]:
             verdicts = judge(given, drive, Wishes())
             for k in range(which, len(given), 2):
                 mine = next(
-                    (d for d in (DefectKind.CIRCUIT, DefectKind.BRANCH) if verdicts.found[d][k]),
+                    (d for d in (DefectKind.CIRCUIT, DefectKind.BRANCH) if verdicts.defects[d][k]),
                     None,
                 )
-                if verdicts.found[DefectKind.NOT_PROVED][k]:
+                if verdicts.defects[DefectKind.NOT_PROVED][k]:
                     counts[f"{kind.value}, {drive.value}: not proved"] += 1
                     continue
                 theirs = verdict_by_circuits(given, drive, k, verdicts.loops.input[k])

@@ -77,7 +77,7 @@ def test_a_balanced_four_bar_is_written(run: Run, tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     ("asked", "message"),
     [
-        ((), "nothing is asked"),
+        ((), "no option is set"),
         (("--rated", "5"), "--rated belongs to --motor"),
         (("--save", "x.toml"), "--save writes the mechanism with its --counterweights"),
         (("--motor", "twelve", "9 rpm"), "--motor needs a number for its torque"),

@@ -115,7 +115,7 @@ _HALTING = [(0, 0), (40, 20), (80, 30), (120, 35), (160, 80), (200, 90)]
     ("function", "tables", "kind", "told"),
     [
         ("x^2", _STARTS, "BRANCH", "With free start angles (input = 90 and output = 90) "),
-        # a wish is to blame
+        # a requirement is to blame
         (
             "sqrt(x)",
             {**_STARTS, "fit": "minimax", "wanted": {"transmission": {"least": 15}}},
@@ -144,15 +144,18 @@ def test_what_helps_a_function_is_tried(
     found = lw.Task.function(function, mechanism="four-bar", **tables).solve()
     (defect,) = found.defects
     assert defect.name in kind.split()
-    assert (found.costliest is not None) == (kind == "TRANSMISSION")
+    assert (found.most_restrictive is not None) == (kind == "TRANSMISSION")
     assert advice_of(found).startswith(told)
 
 
 def test_if_a_wish_is_to_blame_it_is_named_instead(tmp_path: Path) -> None:
     text = _TASK + _GIVEN + "[wanted]\ntransmission = { least = 80 }\n"
     shown = _printed(text, tmp_path, code=1)
-    assert "The wish that costs most is the least transmission angle" in " ".join(shown.split())
-    assert "No wish is to blame" not in shown
+    assert (
+        "The requirement that rejects the most designs is the least transmission angle"
+        in " ".join(shown.split())
+    )
+    assert "No requirement alone is to blame" not in shown
 
 
 def test_one_sound_design_has_no_defect(tmp_path: Path) -> None:

@@ -316,7 +316,7 @@ def test_designs_of_an_interrupted_search_are_written(
         assert not interrupts.was_interrupted()
     finally:
         interrupts.answer_interrupt()
-    assert "the designs are the best found until then" in " ".join(shown.split())
+    assert "the designs are the best ones so far" in " ".join(shown.split())
     assert len(list((tmp_path / "designs").glob("tilt-a-box-*.toml"))) == 5
 
 
@@ -371,7 +371,7 @@ def test_a_folder_that_cannot_be_made_is_refused_before_the_task_is_solved(tmp_p
     assert 'file" is not a folder; name another folder' in " ".join(done.stderr.split())
 
 
-def test_without_a_sound_design_the_costliest_wish_is_named(tmp_path: Path) -> None:
+def test_without_a_sound_design_the_most_restrictive_requirement_is_named(tmp_path: Path) -> None:
     text = _TASK.read_text().replace("least = 30", "least = 85")
     task = tmp_path / "task.toml"
     task.write_text(text)
@@ -379,7 +379,10 @@ def test_without_a_sound_design_the_costliest_wish_is_named(tmp_path: Path) -> N
     assert "No design is free of defects." in shown
     # the lines of the terminal are joined: sentences are wrapped
     told = " ".join(shown.split())
-    assert "The wish that costs most is the least transmission angle: without it" in told
+    assert (
+        "The requirement that rejects the most designs is the least transmission angle: without it"
+        in told
+    )
 
 
 def test_wishes_that_cost_most_together_are_named_with_the_designs_they_cost(
@@ -390,7 +393,7 @@ def test_wishes_that_cost_most_together_are_named_with_the_designs_they_cost(
     path.write_text(text.replace("most = 1400", "most = 300"))
     found = lw.Task.load(path).solve()
     assert all(len(design.kinds) > 1 for design in found.designs)
-    wishes, count = found.costliest or ("", 0)
+    wishes, count = found.most_restrictive or ("", 0)
     assert wishes == "the least transmission angle, together with the bounds of lengths"
     free = text.replace("least = 85", "least = 0").replace("{ most = 1400, ratio = 20 }", "{}")
     path.write_text(free)
@@ -402,7 +405,7 @@ def test_without_a_driven_range_the_range_of_the_positions_counts(tmp_path: Path
     """Nothing is sound in the given range; without it some designs fall to other wishes."""
     text, path = _TASK.read_text(), tmp_path / "task.toml"
     path.write_text(text.replace("[wanted]", "[wanted]\ninput = { from = 20, to = 21 }"))
-    cost = lw.Task.load(path).solve().costliest
+    cost = lw.Task.load(path).solve().most_restrictive
     assert cost == ("the driven range", lw.Task.load(_TASK).solve().sound)
 
 
@@ -446,7 +449,7 @@ _POSES = "".join(
          "  line 11  positions[5]  is the same as position 2: leave one out"),
         ("task = 'motion'\n[[positions]]\npoint = [0, 0]\nangle = 0\n",
          "1 problem in task.toml\n"
-         "  line 3  positions  one position is given: a task needs two or more"),
+         "  line 3  positions  is only one: a task needs two or more"),
         (f"task = 'path'\n{_POINTS}[wanted]\nlengths = {{ most = 30 }}\n",
          "1 problem in task.toml\n"
          "  line 10  positions[4].point  is 158.114 from position 1, out of reach of links\n"
@@ -466,7 +469,7 @@ _POSES = "".join(
          "lengths = { most = 300 }\nclear_of = [[40, 31, 2]]\n"
          "fixed_pivots = { inside = [[0, 0], [100, 0], [100, 100]] }\n",
          "3 problems in task.toml\n"
-         "  line 12  given.fixed_pivots[1]  is outside the region that is wanted for it\n"
+         "  line 12  given.fixed_pivots[1]  is outside [wanted] fixed_pivots inside\n"
          "  line 12  given.fixed_pivots[2]  is in circle 1 of clear_of, so no design can\n"
          "                                  be clear of it\n"
          "  line 14  wanted.lengths         exclude the ground of length 460.977: change\n"
@@ -484,7 +487,7 @@ def test_a_bad_task_is_refused_with_its_whole_message(
     assert done.stderr == f"Error: {message}\n"
 
 
-def test_a_task_without_a_sound_design_counts_defects_and_names_the_costliest_wish(
+def test_a_task_without_a_sound_design_counts_defects_and_names_the_most_restrictive(
     tmp_path: Path,
 ) -> None:
     task = tmp_path / "task.toml"
@@ -500,8 +503,8 @@ def test_a_task_without_a_sound_design_counts_defects_and_names_the_costliest_wi
     )
     assert verdict.partition("\n\n")[2] == (
         "No design is free of defects.\n"
-        "The wish that costs most is the least transmission angle: without it 6 would be\n"
-        "sound.\n"
+        "The requirement that rejects the most designs is the least transmission angle:\n"
+        "without it 6 would be sound.\n"
         "The best least transmission angle is 62.88°.\n"
         "  four-bar driven at A0: transmission angle down to 62.88°, wanted 80°\n"
         "  and 11 more; --json lists all reasons\n"

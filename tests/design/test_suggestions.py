@@ -118,4 +118,4 @@ def test_what_cannot_be_suggested_says_why() -> None:
     linkage = lw.example("four-bar").description
     with pytest.raises(InputError, match="towards points"):
         suggesting.improved(poses, linkage, "four-bar", told)
-    assert suggesting.given(poses) is None
+    assert suggesting.starting_design(poses) is None

@@ -163,7 +163,7 @@ def test_links_with_two_common_points_are_one() -> None:
     rows = b"ground,a,R,0,0,0,ffft\na,b,R,30,0\na,b,R,40,10\nb,c,R,90,50\nc,ground,R,80,0"
     read = read_foreign(rows, "bar.pmks")
     assert set(read.linkage.links) == {"ground", "a", "c"}
-    assert str(read.left_out[0]) == 'link "b": as a link of its own: by P2 and P3 it moves with "a"'
+    assert str(read.left_out[0]) == 'link "b": as a separate link: by P2 and P3 it moves with "a"'
 
 
 @pytest.mark.parametrize("name", SAMPLES)

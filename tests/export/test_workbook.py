@@ -225,7 +225,7 @@ def test_rows_beyond_a_dead_point_say_so_and_the_next_starts_anew(tmp_path: Path
     told = mechanism.write(tmp_path / "again.xlsx", motion=motion)
     assert told[:2] == (
         f"rows without a position, with Linkwork's reason in their status: {int((~found).sum())}",
-        "rows that start from estimates of their own, yellow cells of Newton: 1",
+        "rows that start from separate estimates, yellow cells of Newton: 1",
     )
     assert isinstance(sheet.book["Newton"].cell(7 + first, 2).value, float)
     assert str(sheet.book["Newton"].cell(8 + first, 2).value).startswith("=")

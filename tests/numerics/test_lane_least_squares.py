@@ -7,7 +7,7 @@ import pytest
 from scipy.optimize import least_squares
 
 from linkwork.core.foundation.arrays import Array, IndexArray
-from linkwork.synthesis.lane_least_squares import Box, OwnVariables, Residuals, minimise, starts_of
+from linkwork.synthesis.lane_least_squares import Box, Residuals, RowVariables, minimise, starts_of
 
 _POINTS = np.array([[1.9, -0.4], [2.1, 0.3], [1.7, 1.2], [0.6, 1.9], [-0.5, 1.8]])
 
@@ -23,13 +23,13 @@ def _ellipse(x: Array, t: Array, lanes: IndexArray) -> Residuals:
 
 @pytest.mark.parametrize(("least", "most"), [(0.1, 1.3), (-0.1, 3.0), (0.6, 0.9)])
 @pytest.mark.parametrize("in_order", [False, True])
-def test_bounded_own_variables_reach_the_minimum_of_scipy(
+def test_bounded_row_variables_reach_the_minimum_of_scipy(
     least: float, most: float, in_order: bool
 ) -> None:
     box = Box(least=np.array([0.5, 0.5, -0.2]), most=np.array([3.0, 3.0, 0.2]))
-    own = OwnVariables(least=least, most=most, in_order=in_order, gap=1e-9 * in_order)
+    rows = RowVariables(least=least, most=most, in_order=in_order, gap=1e-9 * in_order)
     x, t = np.array([[1.5, 1.5, 0.0]]), np.linspace(least, most, 5)[None]
-    found = minimise(_ellipse, starts_of(x, t), box, 200, own=own)
+    found = minimise(_ellipse, starts_of(x, t), box, 200, row_variables=rows)
 
     def flat(z: Array) -> Array:
         return _ellipse(z[None, :3], z[None, 3:], np.zeros(1, dtype=np.intp)).rows.ravel()
@@ -46,10 +46,10 @@ def test_bounded_own_variables_reach_the_minimum_of_scipy(
 
 
 def test_variables_in_order_leave_room_for_each_other() -> None:
-    own = OwnVariables(least=0.0, most=1.0, in_order=True, gap=0.1, span=0.7)
-    t = own.inside(np.array([[-3.0, -4.0, 5.0, 4.9]]))
+    rows = RowVariables(least=0.0, most=1.0, in_order=True, gap=0.1, span=0.7)
+    t = rows.inside(np.array([[-3.0, -4.0, 5.0, 4.9]]))
     assert t[0] == pytest.approx([0.0, 0.1, 0.2, 0.3], abs=1e-15)
-    t = own.inside(np.array([[0.9, 0.95, 3.0, 4.0]]))
+    t = rows.inside(np.array([[0.9, 0.95, 3.0, 4.0]]))
     assert t[0] == pytest.approx([0.7, 0.8, 0.9, 1.0], abs=1e-15)
 
 

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from linkwork.core.foundation.arrays import Array, IndexArray
-from linkwork.synthesis.lane_least_squares import Box, LaneFit, OwnVariables, Residuals, starts_of
+from linkwork.synthesis.lane_least_squares import Box, LaneFit, Residuals, RowVariables, starts_of
 from linkwork.synthesis.lane_problems import POWERS, LaneProblem, Multipliers, different
 
 _PLACES = np.array([0.0, 1.0, 5.0])
@@ -19,7 +19,7 @@ class _Mean(LaneProblem):
 
     def __init__(self, lanes: int) -> None:
         box = Box(least=np.array([-9.0]), most=np.array([9.0]))
-        super().__init__(box, OwnVariables(), lanes, len(_PLACES), np.zeros(1, dtype=bool))
+        super().__init__(box, RowVariables(), lanes, len(_PLACES), np.zeros(1, dtype=bool))
         self.bound = Multipliers(lanes, 1)
         self.is_bounded = False
 

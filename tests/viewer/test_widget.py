@@ -65,7 +65,7 @@ def test_a_row_without_a_position_is_refused(limited: lw.Motion) -> None:
         widget.row = missing
     assert str(caught.value) == (
         f'row {missing} of "motion" has no position to show: '
-        f"{len(found)} rows from {found[0]} to {found[-1]} were found"
+        f"{len(found)} rows from {found[0]} to {found[-1]} have one"
     )
     widget.row = int(found[-1])
     assert widget.row == found[-1]

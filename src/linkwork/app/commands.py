@@ -103,7 +103,7 @@ def _suggesting() -> Suggesting:
     return suggesting
 
 
-def _told(name: str, address: str) -> list[str]:
+def _opened_lines(name: str, address: str) -> list[str]:
     return [
         *title_lines(f"{name} is open at"),
         f"  {address}",
@@ -152,7 +152,7 @@ def view_command(file: str | None, port: int, no_browser: bool, as_json: bool) -
         if as_json:
             print_json({"file": None if file is None else opened.name, "address": server.address})
         else:
-            print_lines(_told("The page" if file is None else opened.name, server.address))
+            print_lines(_opened_lines("The page" if file is None else opened.name, server.address))
         if not no_browser:
             threading.Thread(target=webbrowser.open, args=(server.address,), daemon=True).start()
 
@@ -196,15 +196,15 @@ def web_command(out: str, single: bool, pyodide: Path | None, as_json: bool) -> 
     else:
         _check_folder(Path(out))
     with progress("reading" if pyodide else "downloading") as tell:
-        found = pyodide_files(pyodide, tell)
+        pyodide_set = pyodide_files(pyodide, tell)
     with progress("packing"):
-        files = {out: web_page(found)} if single else web_folder(found)
+        files = {out: web_page(pyodide_set)} if single else web_folder(pyodide_set)
     if single:
         write_bytes(out, files.values())
     else:
         _write_folder(Path(out), files)
-    if found.unofficial:
-        listed = ", ".join(found.unofficial)
+    if pyodide_set.unofficial:
+        listed = ", ".join(pyodide_set.unofficial)
         print_lines([f"For tests only: not the official files of {listed}."], err=True)
     size = sum(map(len, files.values()))
     print_written(out, as_json, f": {size / 1e6:.1f} MB; {_next_step(single)}")
@@ -241,7 +241,7 @@ def _check_folder(out: Path) -> None:
 
 def _write_folder(out: Path, files: Mapping[str, bytes]) -> None:
     """Write all files to a temporary folder first: if the disk is full, the old files stay."""
-    with written_folder(out, last="index.html") as part:  # it names the others
+    with written_folder(out, last="index.html") as part:  # it names the other files
         for name, content in files.items():
             path = part / name
             path.parent.mkdir(parents=True, exist_ok=True)
@@ -297,8 +297,8 @@ def link_command(
         code = qr_svg(made).encode() if _suffix(qr) == ".svg" else qr_png(made)
         write_bytes(qr, [code])
     if as_json:
-        found = {"link": made, "characters": len(made), "embed": snippet, "written": written}
-        print_json(found | ({"text": text} if as_text else {}))
+        result = {"link": made, "characters": len(made), "embed": snippet, "written": written}
+        print_json(result | ({"text": text} if as_text else {}))
     elif as_text:
         click.echo(text, nl=False)
     else:
@@ -310,8 +310,8 @@ def link_command(
 
 def _check(file: str, app: str | None, qr: str | None, embed: bool) -> None:
     """Reject options that do not fit together, before anything is read."""
-    for option, wanted in (("--qr", qr is not None), ("--embed", embed)):
-        if wanted and app is None:
+    for option, used in (("--qr", qr is not None), ("--embed", embed)):
+        if used and app is None:
             raise InputError(
                 f"{option} needs the address of a Linkwork app: add --app URL, as in "
                 "--app https://example.org/linkwork/"

@@ -41,7 +41,7 @@ def counterweights_of(linkage: Linkage, radius: float | Mapping[str, float]) -> 
     """
     weights = tuple(_weights(linkage, radius))
     (force, moment), (force_after, moment_after) = (
-        _shaking(own) for own in (linkage, balanced_linkage(linkage, weights))
+        _shaking(each) for each in (linkage, balanced_linkage(linkage, weights))
     )
     mass, length, unit = linkage.mass, linkage.length, linkage.force
     return Counterweights(
@@ -69,9 +69,9 @@ def _weights(linkage: Linkage, radius: float | Mapping[str, float]) -> Iterator[
     for (link, fixed, _), arm, part in zip(
         bar.sides, (first, second), (1.0 - share, share), strict=True
     ):
-        own, place = _mass(linkage, link)
+        link_mass, place = _mass(linkage, link)
         # eq. (80)
-        needed = -(own * (place - _local(linkage, link, fixed)) + mass * part * arm)
+        needed = -(link_mass * (place - _local(linkage, link, fixed)) + mass * part * arm)
         size = abs(needed)
         distance = radius[link] if isinstance(radius, Mapping) else radius
         if not distance > 0.0:
@@ -91,14 +91,14 @@ def balanced_linkage(linkage: Linkage, weights: tuple[Counterweight, ...]) -> Li
     """The linkage with its counterweights."""
     masses = dict(linkage.masses)
     for weight in weights:
-        own, centre = _mass(linkage, weight.link)
-        total = own + weight.mass
+        link_mass, centre = _mass(linkage, weight.link)
+        total = link_mass + weight.mass
         if not total:
             continue
         place = complex(*weight.place)
-        both = (own * centre + weight.mass * place) / total
+        both = (link_mass * centre + weight.mass * place) / total
         inertia = _inertia(linkage, weight.link)
-        inertia += own * abs(centre - both) ** 2 + weight.mass * abs(place - both) ** 2
+        inertia += link_mass * abs(centre - both) ** 2 + weight.mass * abs(place - both) ** 2
         masses[weight.link] = Mass(mass=total, center=(both.real, both.imag), inertia=inertia)
     return replace(linkage, masses=masses)
 
@@ -106,15 +106,15 @@ def balanced_linkage(linkage: Linkage, weights: tuple[Counterweight, ...]) -> Li
 def _shaking(linkage: Linkage) -> tuple[float, float]:
     """The largest shaking force and moment of the masses alone, at the input's speed or 1 rad/s."""
     inputs = tuple(
-        own if own.speed is not None or own.law is not None else replace(own, speed="1 rad/s")
-        for own in linkage.inputs
+        each if each.speed is not None or each.law is not None else replace(each, speed="1 rad/s")
+        for each in linkage.inputs
     )
     alone = replace(
         linkage, loads=(), springs=(), gravity=None, friction=FrozenDict(), inputs=inputs
     )
     model = motion.model_of(alone)
-    found = forces_of_motion(model, motion.sweep(model, certify=False))
-    x, y, moment = (np.asarray(found[f"shaking.{part}"]) for part in ("x", "y", "moment"))
+    forces = forces_of_motion(model, motion.sweep(model, certify=False))
+    x, y, moment = (np.asarray(forces[f"shaking.{part}"]) for part in ("x", "y", "moment"))
     return float(np.nanmax(np.hypot(x, y))), float(np.nanmax(np.abs(moment)))
 
 
@@ -147,22 +147,22 @@ def _local(linkage: Linkage, link: str, point: str) -> complex:
 
 def _mass(linkage: Linkage, link: str) -> tuple[float, complex]:
     """The mass of a link, and its centre in the link's frame."""
-    given = linkage.masses.get(link)
-    if given is None:
+    stated = linkage.masses.get(link)
+    if stated is None:
         return 0.0, 0j
-    mass = linkage.numbers(given.mass)
-    if given.shape is not None:
+    mass = linkage.numbers(stated.mass)
+    if stated.shape is not None:
         return mass, complex(_rod(linkage, link) / 2.0)
-    return mass, complex(*map(linkage.numbers, given.center or (0.0, 0.0)))
+    return mass, complex(*map(linkage.numbers, stated.center or (0.0, 0.0)))
 
 
 def _inertia(linkage: Linkage, link: str) -> float:
-    given = linkage.masses.get(link)
-    if given is None:
+    stated = linkage.masses.get(link)
+    if stated is None:
         return 0.0
-    if given.shape is not None:
-        return float(linkage.numbers(given.mass) * _rod(linkage, link) ** 2 / 12.0)
-    return float(linkage.numbers(given.inertia))
+    if stated.shape is not None:
+        return float(linkage.numbers(stated.mass) * _rod(linkage, link) ** 2 / 12.0)
+    return float(linkage.numbers(stated.inertia))
 
 
 def _rod(linkage: Linkage, link: str) -> float:

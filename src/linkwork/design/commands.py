@@ -51,116 +51,116 @@ from linkwork.design.tolerance_results import Sensitivity, SensitivityStatus, To
 # Sensitivities and tolerances as pages of text.
 
 
-def sensitivity_lines(found: Sensitivity) -> list[str]:
+def sensitivity_lines(result: Sensitivity) -> list[str]:
     """The derivatives by number, the largest first."""
-    lines = title_lines(found.mechanism)
-    rows = found.value.ndim > 0
-    at = {} if rows else {name: float(value) for name, value in found.inputs.items()}
-    where = f"at {driven_text(at, found.input_units)}" if at else ""
+    lines = title_lines(result.mechanism)
+    rows = result.value.ndim > 0
+    at = {} if rows else {name: float(value) for name, value in result.inputs.items()}
+    where = f"at {driven_text(at, result.input_units)}" if at else ""
     if rows:
-        where = f"in {len(found)} positions"
-    counts = Counter(status for status in found.statuses if status is not SensitivityStatus.FOUND)
-    if len(counts) and SensitivityStatus.FOUND not in found.statuses and not rows:
-        lines += sentence(bad, f"No sensitivity of {found.of}", where)
-        lines += fields([("why", found.status.value)])
-        if found.status is not SensitivityStatus.CORNER:
+        where = f"in {len(result)} positions"
+    counts = Counter(status for status in result.statuses if status is not SensitivityStatus.FOUND)
+    if len(counts) and SensitivityStatus.FOUND not in result.statuses and not rows:
+        lines += sentence(bad, f"No sensitivity of {result.of}", where)
+        lines += fields([("why", result.status.value)])
+        if result.status is not SensitivityStatus.CORNER:
             return lines
     else:
-        lines += sentence(good, f"Sensitivity of {found.of}", where)
+        lines += sentence(good, f"Sensitivity of {result.of}", where)
     if not rows:
-        lines += fields([("value", f"{short(float(found.value))} {found.unit}".rstrip())])
+        lines += fields([("value", f"{short(float(result.value))} {result.unit}".rstrip())])
     else:
-        lines += fields([("found", str(found.statuses.count(SensitivityStatus.FOUND)))])
+        lines += fields([("found", str(result.statuses.count(SensitivityStatus.FOUND)))])
         lines += (
             fields([(status.label, f"{count}: {status.value}") for status, count in counts.items()])
             if counts
             else []
         )
-    names = found.effective
+    names = result.effective
     if names:
-        lines += ["", *_table(found, names, rows)]
-    rest = len(found.derivatives) - len(names)
-    notes = list(_notes(found, rest))
+        lines += ["", *_table(result, names, rows)]
+    rest = len(result.derivatives) - len(names)
+    notes = list(_notes(result, rest))
     return [*lines, "", *fields(notes)] if notes else lines
 
 
-def _notes(found: Sensitivity, rest: int) -> Iterator[tuple[str, str]]:
+def _notes(sensitivity: Sensitivity, rest: int) -> Iterator[tuple[str, str]]:
     if rest:
         plural = "numbers have" if rest > 1 else "number has"
         yield "others", f"{rest} more {plural} no effect"
     reasons: dict[str, list[str]] = {}
-    for name, why in found.refused.items():
+    for name, why in sensitivity.refused.items():
         reasons.setdefault(why, []).append(name)
     for why, names in reasons.items():
         yield "refused", f"{', '.join(names)}: {why}"
 
 
-def _table(found: Sensitivity, names: tuple[str, ...], rows: bool) -> list[str]:
-    units = [found.unit_by(name) for name in names]
+def _table(sensitivity: Sensitivity, names: tuple[str, ...], rows: bool) -> list[str]:
+    units = [sensitivity.unit_by(name) for name in names]
     columns = [
         Column(header="number", cells=list(names)),
         Column(
             header="value",
-            cells=[short(found.numbers[name]) for name in names],
+            cells=[short(sensitivity.numbers[name]) for name in names],
             align="point",
-            units=[found.units[name] for name in names],
+            units=[sensitivity.units[name] for name in names],
         ),
     ]
     if not rows:
-        cells = [significant(float(found.derivatives[name])) for name in names]
+        cells = [significant(float(sensitivity.derivatives[name])) for name in names]
         columns.append(Column(header="derivative", cells=cells, align="point", units=units))
         return table_lines(columns)
     for header, extreme in (("smallest", np.fmin.reduce), ("largest", np.fmax.reduce)):
-        cells = [significant(float(extreme(found.derivatives[name]))) for name in names]
+        cells = [significant(float(extreme(sensitivity.derivatives[name]))) for name in names]
         columns.append(Column(header=header, cells=cells, align="point", units=units))
     return table_lines(columns)
 
 
-def sensitivity_data(found: Sensitivity) -> dict[str, Any]:
+def sensitivity_data(sensitivity: Sensitivity) -> dict[str, Any]:
     """The derivatives as JSON-ready data."""
     return {
-        "mechanism": found.mechanism,
-        "of": found.of,
-        "unit": found.unit,
-        "status": [status.name for status in found.statuses],
-        "inputs": {name: np.asarray(value).tolist() for name, value in found.inputs.items()},
-        "value": found.value.tolist(),
-        "derivatives": {name: rates.tolist() for name, rates in found.derivatives.items()},
-        "units": {name: found.unit_by(name) for name in found.derivatives},
-        "refused": dict(found.refused),
+        "mechanism": sensitivity.mechanism,
+        "of": sensitivity.of,
+        "unit": sensitivity.unit,
+        "status": [status.name for status in sensitivity.statuses],
+        "inputs": {name: np.asarray(value).tolist() for name, value in sensitivity.inputs.items()},
+        "value": sensitivity.value.tolist(),
+        "derivatives": {name: rates.tolist() for name, rates in sensitivity.derivatives.items()},
+        "units": {name: sensitivity.unit_by(name) for name in sensitivity.derivatives},
+        "refused": dict(sensitivity.refused),
     }
 
 
-def tolerance_lines(found: Tolerance) -> list[str]:
+def tolerance_lines(tolerance: Tolerance) -> list[str]:
     """Worst case, root sum square, and the share of each number and pin."""
-    lines = title_lines(found.mechanism)
-    where = f"at {found.where}" if found.where else ""
-    if found.status is not SensitivityStatus.FOUND:
-        lines += sentence(bad, f"No tolerance of {found.of}", where)
-        lines += fields([("why", found.status.value)])
-        return [*lines, *_sampled(found)]
-    lines += sentence(good, f"Tolerance of {found.of}", where)
-    lines += [*fields(tolerance_fields(found)), *_sampled(found)]
-    return [*lines, "", *table_lines(contribution_columns(found))]
+    lines = title_lines(tolerance.mechanism)
+    where = f"at {tolerance.where}" if tolerance.where else ""
+    if tolerance.status is not SensitivityStatus.FOUND:
+        lines += sentence(bad, f"No tolerance of {tolerance.of}", where)
+        lines += fields([("why", tolerance.status.value)])
+        return [*lines, *_sampled(tolerance)]
+    lines += sentence(good, f"Tolerance of {tolerance.of}", where)
+    lines += [*fields(tolerance_fields(tolerance)), *_sampled(tolerance)]
+    return [*lines, "", *table_lines(contribution_columns(tolerance))]
 
 
-def _sampled(found: Tolerance) -> list[str]:
-    return [] if found.sampled is None else fields(sampled_fields(found))
+def _sampled(tolerance: Tolerance) -> list[str]:
+    return [] if tolerance.sampled is None else fields(sampled_fields(tolerance))
 
 
-def tolerance_data(found: Tolerance) -> dict[str, Any]:
+def tolerance_data(tolerance: Tolerance) -> dict[str, Any]:
     """The tolerance as JSON-ready data."""
     return {
-        "mechanism": found.mechanism,
-        "of": found.of,
-        "unit": found.unit,
-        "inputs": dict(found.inputs),
-        "status": found.status.name,
-        "value": found.value,
-        "worst_case": found.worst_case,
-        "root_sum_square": found.root_sum_square,
-        "contributions": [asdict(part) for part in found.contributions],
-        "sampled": None if found.sampled is None else asdict(found.sampled),
+        "mechanism": tolerance.mechanism,
+        "of": tolerance.of,
+        "unit": tolerance.unit,
+        "inputs": dict(tolerance.inputs),
+        "status": tolerance.status.name,
+        "value": tolerance.value,
+        "worst_case": tolerance.worst_case,
+        "root_sum_square": tolerance.root_sum_square,
+        "contributions": [asdict(part) for part in tolerance.contributions],
+        "sampled": None if tolerance.sampled is None else asdict(tolerance.sampled),
     }
 
 
@@ -215,16 +215,16 @@ def sensitivity_command(
     elif values is not None and is_of_motion(of):
         raise InputError(f'"{of}" is a number of a whole motion: leave out --at')
     with progress("differentiating"):
-        found = design.sensitivity(
+        result = design.sensitivity(
             mechanism, of, values, by=by or None, configuration=configuration, motion=motion
         )
-    written = write_table(csv, found.table())
+    written = write_table(csv, result.table())
     if as_json:
-        print_json(sensitivity_data(found))
+        print_json(sensitivity_data(result))
     elif csv != "-":
-        print_page(sensitivity_lines(found), written)
+        print_page(sensitivity_lines(result), written)
     lost = (SensitivityStatus.NO_POSITION, SensitivityStatus.DEAD_POINT)
-    if all(status in lost for status in found.statuses):
+    if all(status in lost for status in result.statuses):
         context.exit(1)
 
 
@@ -270,15 +270,15 @@ def tolerance_command(
     mechanism = read_mechanism(file, changes)
     values = input_values(mechanism, at)
     with progress("solving"):
-        found = design.tolerance(
+        result = design.tolerance(
             mechanism, of, values, samples=samples, seed=seed, configuration=configuration
         )
-    written = write_table(csv, found.table())
+    written = write_table(csv, result.table())
     if as_json:
-        print_json(tolerance_data(found))
+        print_json(tolerance_data(result))
     elif csv != "-":
-        print_page(tolerance_lines(found), written)
-    if found.status is not SensitivityStatus.FOUND:
+        print_page(tolerance_lines(result), written)
+    if result.status is not SensitivityStatus.FOUND:
         context.exit(1)
 
 
@@ -319,7 +319,7 @@ def design_command(
     configuration: str | None,
     changes: tuple[str, ...],
     as_json: bool,
-    **asked: Any,
+    **options: Any,
 ) -> None:
     """Choose flywheel, motor and counterweights; harmonics and curvature.
 
@@ -330,69 +330,69 @@ def design_command(
       linkwork design four-bar.toml --counterweights 20 --save balanced.toml
       linkwork design four-bar.toml --inflection coupler --at 60
     """
-    if asked["rated"] is not None and not asked["motor"]:
+    if options["rated"] is not None and not options["motor"]:
         raise InputError("--rated belongs to --motor")
-    if asked["save"] is not None and asked["counterweights"] is None:
+    if options["save"] is not None and options["counterweights"] is None:
         raise InputError("--save writes the mechanism with its --counterweights")
-    check_outputs(file, asked["save"])
+    check_outputs(file, options["save"])
     mechanism = read_mechanism(file, changes)
-    found = dict(_answers(mechanism, asked, input_values(mechanism, at), configuration))
-    if not found:
+    answers = dict(_answers(mechanism, options, input_values(mechanism, at), configuration))
+    if not answers:
         raise InputError(
-            "nothing is asked: add --flywheel, --motor, --harmonics, --counterweights or "
+            "no option is set: add --flywheel, --motor, --harmonics, --counterweights or "
             "--inflection"
         )
     written = []
-    if asked["save"] is not None:
-        design.balanced(mechanism, asked["counterweights"]).save(Path(asked["save"]))
-        written = ["", f"Wrote {asked['save']}."]
+    if options["save"] is not None:
+        design.balanced(mechanism, options["counterweights"]).save(Path(options["save"]))
+        written = ["", f"Wrote {options['save']}."]
     if as_json:
-        print_json({name: _data(answer) for name, answer in found.items()})
+        print_json({name: _data(answer) for name, answer in answers.items()})
         return
     lines = title_lines(mechanism.name)
-    for answer in found.values():
+    for answer in answers.values():
         lines += ["", answer.summary.head, *fields(list(answer.summary.rows))]
     print_lines([*lines, *written])
 
 
 def _answers(
     mechanism: Mechanism,
-    asked: dict[str, Any],
+    options: dict[str, Any],
     at: dict[str, float] | None,
     configuration: str | None,
 ) -> Iterator[tuple[str, Any]]:
-    """Everything that is asked, by the name of its option."""
+    """The requested results by the names of their options."""
     motion: Motion | None = None
-    if any(asked[name] for name in ("flywheel", "motor", "harmonics")):
+    if any(options[name] for name in ("flywheel", "motor", "harmonics")):
         with progress("sweeping") as tell:
             motion = mechanism.sweep(configuration=configuration, progress=tell)
-    if asked["flywheel"] is not None:
-        yield "flywheel", design.flywheel(mechanism, asked["flywheel"], motion=motion)
-    if asked["motor"]:
-        stall, speed = asked["motor"]
+    if options["flywheel"] is not None:
+        yield "flywheel", design.flywheel(mechanism, options["flywheel"], motion=motion)
+    if options["motor"]:
+        stall, speed = options["motor"]
         yield (
             "motor",
             design.motor_check(
                 mechanism,
                 stall=_number(stall),
                 free_speed=speed,
-                rated=asked["rated"],
+                rated=options["rated"],
                 motion=motion,
             ),
         )
-    if asked["harmonics"] is not None:
+    if options["harmonics"] is not None:
         yield (
             "harmonics",
-            design.harmonics(mechanism, asked["harmonics"], asked["count"], motion=motion),
+            design.harmonics(mechanism, options["harmonics"], options["count"], motion=motion),
         )
-    if asked["counterweights"] is not None:
+    if options["counterweights"] is not None:
         with progress("balancing"):
-            yield "counterweights", design.counterweights(mechanism, asked["counterweights"])
-    if asked["inflection"] is not None:
+            yield "counterweights", design.counterweights(mechanism, options["counterweights"])
+    if options["inflection"] is not None:
         yield (
             "inflection",
             design.inflection_circle(
-                mechanism, asked["inflection"], at, configuration=configuration
+                mechanism, options["inflection"], at, configuration=configuration
             ),
         )
 
@@ -405,13 +405,13 @@ def _number(text: str) -> float:
 
 
 def _data(answer: Any) -> dict[str, Any]:
-    """A result as JSON-ready data, with what follows from its fields."""
+    """A result as JSON-ready data, with its derived properties."""
     follows = ("fits", "diameter", "center")
-    own = {**vars(answer), **{n: getattr(answer, n) for n in follows if hasattr(answer, n)}}
-    return {name: _plain(entry) for name, entry in own.items()}
+    entries = {**vars(answer), **{n: getattr(answer, n) for n in follows if hasattr(answer, n)}}
+    return {name: _json_entry(entry) for name, entry in entries.items()}
 
 
-def _plain(entry: Any) -> Any:
+def _json_entry(entry: Any) -> Any:
     if isinstance(entry, np.ndarray):
         return entry.tolist()
     if isinstance(entry, tuple):

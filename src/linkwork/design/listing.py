@@ -8,20 +8,20 @@ from linkwork.core.results.listing.motion_listing import Column, fixed, short, s
 from linkwork.design.tolerance_results import Tolerance
 
 
-def tolerance_fields(found: Tolerance) -> Iterator[tuple[str, str]]:
+def tolerance_fields(tolerance: Tolerance) -> Iterator[tuple[str, str]]:
     """The quantity, its worst case and its standard deviation."""
-    unit = found.unit
-    yield "value", f"{short(found.value)} {unit}".rstrip()
-    yield "worst case", f"± {significant(found.worst_case)} {unit}".rstrip()
-    yield "root sum square", f"{significant(found.root_sum_square)} {unit}".rstrip()
+    unit = tolerance.unit
+    yield "value", f"{short(tolerance.value)} {unit}".rstrip()
+    yield "worst case", f"± {significant(tolerance.worst_case)} {unit}".rstrip()
+    yield "root sum square", f"{significant(tolerance.root_sum_square)} {unit}".rstrip()
 
 
-def sampled_fields(found: Tolerance) -> Iterator[tuple[str, str]]:
+def sampled_fields(tolerance: Tolerance) -> Iterator[tuple[str, str]]:
     """The quantity in random designs; nothing if there were none."""
-    drawn = found.sampled
+    drawn = tolerance.sampled
     if drawn is None:
         return
-    unit = found.unit
+    unit = tolerance.unit
     yield (
         "sampled",
         f"deviation {significant(drawn.deviation)} ± {significant(drawn.error, 2)} {unit}, mean "
@@ -30,9 +30,9 @@ def sampled_fields(found: Tolerance) -> Iterator[tuple[str, str]]:
     )
 
 
-def contribution_columns(found: Tolerance) -> list[Column]:
+def contribution_columns(tolerance: Tolerance) -> list[Column]:
     """The share of each number and pin."""
-    parts = found.contributions
+    parts = tolerance.contributions
     names = [part.name if part.kind == "dimension" else f"pin {part.name}" for part in parts]
 
     def column(header: str, cells: list[str], units: list[str] | None = None) -> Column:
@@ -50,6 +50,8 @@ def contribution_columns(found: Tolerance) -> list[Column]:
             [significant(part.sensitivity) for part in parts],
             [part.unit for part in parts],
         ),
-        column("change", [significant(part.worst) for part in parts], [found.unit] * len(parts)),
+        column(
+            "change", [significant(part.worst) for part in parts], [tolerance.unit] * len(parts)
+        ),
         column("share %", [fixed(100.0 * part.share, 1) for part in parts]),
     ]

@@ -73,7 +73,7 @@ def whole_turn(model: Model, motion: Motion, name: str) -> Cycle:
     Raises
     ------
     UnknownNameError
-        If there is no such quantity.
+        If the quantity does not exist.
     InputError
         If the table is no whole turn of a rotating input in equal steps, or a row has no value.
     """
@@ -93,10 +93,10 @@ def whole_turn(model: Model, motion: Motion, name: str) -> Cycle:
             f"needs a whole turn in equal steps, the table goes from {first:g} to {last:g} {unit}: "
             "change from, to and step of the input"
         )
-    asked = motion.quantity(name)
-    if asked.group is Group.EVIDENCE:
+    quantity = motion.quantity(name)
+    if quantity.group is Group.EVIDENCE:
         raise InputError(f'"{name}" is evidence of rows, and has no values between them')
-    return cycle(model, motion, lambda rows: asked.values(rows, motion.speed), name)
+    return cycle(model, motion, lambda rows: quantity.values(rows, motion.speed), name)
 
 
 def cycle(model: Model, motion: Motion, of: Callable[[Solved], Array], name: str) -> Cycle:
@@ -290,25 +290,25 @@ def motor_check(
 
 def _curve(model: Model, motor: Motor, kind: Kind, speeds: Array) -> Callable[[Array], Array]:
     """The torque or force of a motor over speeds, which it must reach (B,) [file unit/s]."""
-    own, drives = model.description, "link" if kind is Kind.ANGLE else "slider"
-    for key, message in motor.mistakes(drives, own.numbers, own.length):
+    file, drives = model.description, "link" if kind is Kind.ANGLE else "slider"
+    for key, message in motor.mistakes(drives, file.numbers, file.length):
         raise InputError(f"{key_text(key)} {message}")
-    given = (*motor.speeds, *([] if motor.free_speed is None else [motor.free_speed]))
-    known = [speed_per_second(each, drives, own.numbers, own.length) for each in given]
+    stated = (*motor.speeds, *([] if motor.free_speed is None else [motor.free_speed]))
+    known = [speed_per_second(each, drives, file.numbers, file.length) for each in stated]
     if not motor.speeds:
-        stall = own.numbers(motor.stall or 0.0)
+        stall = file.numbers(motor.stall or 0.0)
         for name, value in [("stall", stall), *(("free_speed", free) for free in known)]:
             if not value > 0.0:
                 raise InputError(f"{name} must be positive, got {value:g}")
-        return motor.curve(drives, own.numbers, own.length)
+        return motor.curve(drives, file.numbers, file.length)
     for speed in (speeds.min(), speeds.max()):
         if not known[0] * (1.0 - _ROUNDING) <= speed <= known[-1] * (1.0 + _ROUNDING):
             ends = " to ".join(str(each) for each in (motor.speeds[0], motor.speeds[-1]))
-            turning = speed * own.angle.radians * 60.0 / FULL_TURN
-            at = f"{turning:.6g} rpm" if kind is Kind.ANGLE else f"{speed:.6g} {own.length}/s"
+            turning = speed * file.angle.radians * 60.0 / FULL_TURN
+            at = f"{turning:.6g} rpm" if kind is Kind.ANGLE else f"{speed:.6g} {file.length}/s"
             word = "turns" if kind is Kind.ANGLE else "moves"
             raise InputError(f"the motor's table goes from {ends}, but the input {word} at {at}")
-    return motor.curve(drives, own.numbers, own.length)
+    return motor.curve(drives, file.numbers, file.length)
 
 
 # ----------------------------------------------------------------------
@@ -332,7 +332,7 @@ def harmonics(
     Raises
     ------
     UnknownNameError, InputError
-        If there is no such quantity, or no whole turn.
+        If the quantity does not exist, or the motion is no whole turn.
 
     Examples
     --------
@@ -391,7 +391,7 @@ def inflection_circle(
     Raises
     ------
     UnknownNameError, InputError
-        If there is no such link, or it does not turn there.
+        If the link does not exist, or it does not turn there.
 
     Examples
     --------

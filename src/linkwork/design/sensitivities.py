@@ -70,12 +70,12 @@ def play_of_position(
     -------
     array (pins, 1, 2)
     """
-    asked, row = model.quantities.find(of), row_of(model, position)
+    quantity, row = model.quantities.find(of), row_of(model, position)
     v = np.where((row.found & row.regular)[:, None], row.v, np.nan)
-    taped = LoadedRows(model, (), v, asked.needs, pins)
+    taped = LoadedRows(model, (), v, quantity.needs, pins)
     with np.errstate(all="ignore"):
         # R of eq. (124)
-        rates = taped.tape.backward(asked.values(taped, taped.speed))
+        rates = taped.tape.backward(quantity.values(taped, taped.speed))
     return np.broadcast_to(rates, (2 * len(pins), 1)).reshape(len(pins), 1, 2)
 
 
@@ -85,13 +85,13 @@ def play_of_motion(model: Model, motion: Motion, of: str, pins: Sequence[tuple[s
     A journal may lie differently in each row on which an extreme depends; where rates enter, such
     as in the length of a path, it stays where it is in all rows.
     """
-    _, _, parts = _asked_of_motion(model, motion, of)
-    found = []
+    _, _, parts = _number_and_parts(model, motion, of)
+    plays = []
     for part in parts:
         rates = part.rates(model, (), pins)
         moved = rates.reshape(len(pins), 2, rates.shape[1]).swapaxes(1, 2)
-        found.append(moved if part.depends_on_values else moved.sum(axis=1, keepdims=True))
-    return np.concatenate(found, axis=1) if found else np.zeros((len(pins), 0, 2))
+        plays.append(moved if part.depends_on_values else moved.sum(axis=1, keepdims=True))
+    return np.concatenate(plays, axis=1) if plays else np.zeros((len(pins), 0, 2))
 
 
 def sensitivity_of_rows(
@@ -112,21 +112,21 @@ def _of_rows(
     by: Iterable[str] | None,
     shape: tuple[int, ...],
 ) -> Sensitivity:
-    asked = model.quantities.find(of)
-    _check(asked, of)
-    asked.check_rate(model.speed)
+    named = model.quantities.find(of)
+    _check(named, of)
+    named.check_rate(model.speed)
     numbers, refused = _fitting_numbers(model, rows, by)
-    # rows without a derivative would spoil the inverses of the others
+    # rows without a derivative would spoil the inverses of other rows
     v = np.where((rows.found & rows.regular)[:, None], rows.v, np.nan)
     derivatives: dict[str, Array] = {}
     for group in groups_of(model.description, numbers):
-        taped = LoadedRows(model, group, v, asked.needs)
+        taped = LoadedRows(model, group, v, named.needs)
         with np.errstate(all="ignore"):
-            rates = taped.tape.backward(asked.values(taped, taped.speed))
+            rates = taped.tape.backward(named.values(taped, taped.speed))
         each = (len(group), len(v))
         rates = np.broadcast_to(rates, each) + _fitting(taped, each)
         derivatives |= dict(zip((q.name for q in group), rates, strict=True))
-    value = np.broadcast_to(np.atleast_1d(asked.values(rows.solved, model.speed)), len(v))
+    value = np.broadcast_to(np.atleast_1d(named.values(rows.solved, model.speed)), len(v))
     status = np.full(len(v), SensitivityStatus.FOUND.code)
     corner = np.isnan(value)
     for name, rates in derivatives.items():
@@ -136,7 +136,8 @@ def _of_rows(
     status[corner] = SensitivityStatus.CORNER.code
     status[~rows.regular] = SensitivityStatus.DEAD_POINT.code
     status[~rows.found] = SensitivityStatus.NO_POSITION.code
-    return _result(model, of=asked.name, unit=asked.unit, inputs=inputs, value=value.reshape(shape),
+    return _result(
+        model, of=named.name, unit=named.unit, inputs=inputs, value=value.reshape(shape),
         derivatives={name: rates.reshape(shape) for name, rates in derivatives.items()},
         numbers=numbers, statuses=SensitivityStatus.of_codes(status), refused=refused)  # fmt: skip
 
@@ -149,7 +150,7 @@ def _fitting_numbers(
     Raises
     ------
     InputError
-        For a number asked for after which a redundant link does not fit.
+        For a requested number that would break the fit of a redundant link.
     """
     numbers, refused = chosen_numbers(model, by)
     # whether a redundant link follows is the same in all positions
@@ -160,17 +161,17 @@ def _fitting_numbers(
         taped = DifferentiatedRows(model, group, rows.v[there[:1]], 0)
         fits = np.isfinite(_fitting(taped, (len(group), 1)))[:, 0]
         why = "a redundant link does not fit any more"
-        refused |= {q.name: why for q, own in zip(group, fits, strict=True) if not own}
+        refused |= {q.name: why for q, fitting in zip(group, fits, strict=True) if not fitting}
     wrong = [q.name for q in numbers if q.name in refused]
     if by is not None and wrong:
         raise InputError(f'"{wrong[0]}" cannot vary: {refused[wrong[0]]}')
     return tuple(q for q in numbers if q.name not in refused), refused
 
 
-def _check(asked: Asked, of: str) -> None:
-    if asked.group is Group.EVIDENCE:
+def _check(quantity: Asked, of: str) -> None:
+    if quantity.group is Group.EVIDENCE:
         raise InputError(f'"{of}" measures how a position was found: it has no sensitivity')
-    if asked.needs > 2:
+    if quantity.needs > 2:
         raise InputError(
             f'the derivatives of "{of}" are not known: those of positions, velocities and '
             "accelerations are"
@@ -179,11 +180,11 @@ def _check(asked: Asked, of: str) -> None:
 
 def _fitting(taped: DifferentiatedRows, shape: tuple[int, ...]) -> Array:
     """0, or NaN for numbers whose change a redundant link does not follow, (P, B)."""
-    found = np.zeros(shape)
+    corrections = np.zeros(shape)
     for misfit in taped.misfits:
         rates = np.broadcast_to(taped.tape.forward([misfit])[0], shape)
-        found[np.abs(rates) > _FITS] = np.nan
-    return found
+        corrections[np.abs(rates) > _FITS] = np.nan
+    return corrections
 
 
 def _result(
@@ -224,22 +225,22 @@ def sensitivity_of_motion(
         As :func:`sensitivity_of_position`; also for a number whose derivatives are not known.
     """
     numbers, refused = _fitting_numbers(model, rows_of(model, motion), by)
-    value, unit, parts = _asked_of_motion(model, motion, of)
+    value, unit, parts = _number_and_parts(model, motion, of)
     rates = {q.name: np.zeros(()) for q in numbers}
     for part in parts:
         for group in groups_of(model.description, numbers):
-            own = np.sum(part.rates(model, group), axis=1)
-            for q, rate in zip(group, own, strict=True):
+            totals = np.sum(part.rates(model, group), axis=1)
+            for q, rate in zip(group, totals, strict=True):
                 rates[q.name] = rates[q.name] + rate
-    found = all(np.isfinite(rate) for rate in rates.values()) and np.isfinite(value)
-    status = SensitivityStatus.FOUND if found else SensitivityStatus.CORNER
+    finite = all(np.isfinite(rate) for rate in rates.values()) and np.isfinite(value)
+    status = SensitivityStatus.FOUND if finite else SensitivityStatus.CORNER
     if not motion.found.any():
         status = SensitivityStatus.NO_POSITION
     return _result(model, of=of.strip(), unit=unit, inputs={}, value=np.asarray(value),
         derivatives=rates, numbers=numbers, statuses=(status,), refused=refused)  # fmt: skip
 
 
-def _asked_of_motion(model: Model, motion: Motion, of: str) -> tuple[float, str, list[_Part]]:
+def _number_and_parts(model: Model, motion: Motion, of: str) -> tuple[float, str, list[_Part]]:
     """The number, its unit, and the rows on which it depends."""
     if of.strip() in LIMITS:
         return _limit(model, motion, of.strip())
@@ -275,9 +276,9 @@ class _Part:
             columns: Sequence[Any] = (
                 (taped.leading_input,) if self.of is None else self.of.columns(taped, taped.speed)
             )
-            given = (self.weights.value, self.weights.first, self.weights.second)
+            weights = (self.weights.value, self.weights.first, self.weights.second)
             total: Any = np.zeros(len(self.v))
-            for weight, column in zip(given, columns, strict=False):
+            for weight, column in zip(weights, columns, strict=False):
                 if np.any(weight != 0.0):
                     total = total + np.real(np.conj(weight) * column)
             rates = taped.tape.backward(total)
@@ -286,22 +287,22 @@ class _Part:
 
 
 def _number(model: Model, motion: Motion, of: str) -> tuple[float, str, list[_Part]]:
-    asked = model.quantities.find_of_motion(of)
-    _check(asked.of, of)
-    if asked.of.rate is not None and asked.of.rate.by_time:
+    request = model.quantities.find_of_motion(of)
+    _check(request.of, of)
+    if request.of.rate is not None and request.of.rate.by_time:
         raise UnknownNameError(
-            f'"{of}" has no sensitivity: ask for it by the input, such as "{asked.of.own.name}.d1"'
+            f'"{of}" has no sensitivity: use "{request.of.own.name}.d1", the rate by the input'
         )
-    located = motion.located(asked)
-    value = float(asked.number(located.rows))
+    located = motion.located(request)
+    value = float(request.number(located.rows))
     with np.errstate(all="ignore"):
-        slopes = asked.quantity.slopes(located.rows, asked.numbers)
-    further = cast("Sequence[Motion]", located.further)  # what a motion solves
+        slopes = request.quantity.slopes(located.rows, request.numbers)
+    further = cast("Sequence[Motion]", located.further)  # equations of a motion
     rows = rows_of(model, motion, *further).take(located.order)
-    return value, asked.unit, list(_parts(rows, slopes, asked))
+    return value, request.unit, list(_parts(rows, slopes, request))
 
 
-def _parts(rows: RegularRows, slopes: RowSlopes, asked: AskedOfMotion) -> Iterator[_Part]:
+def _parts(rows: RegularRows, slopes: RowSlopes, request: AskedOfMotion) -> Iterator[_Part]:
     """Regular rows and dead points that a number depends on."""
     count = len(rows.v)
     weights = [np.broadcast_to(w, count) for w in (slopes.value, slopes.first, slopes.second)]
@@ -311,9 +312,9 @@ def _parts(rows: RegularRows, slopes: RowSlopes, asked: AskedOfMotion) -> Iterat
         which = np.flatnonzero(used & (rows.regular != fold))
         if len(which):
             names = ("value", "first", "second")
-            given = (weight[which] for weight in weights)
-            own = RowSlopes(**dict(zip(names, given, strict=True)))
-            yield _Part(rows.v[which], own, asked, fold)
+            parts = (weight[which] for weight in weights)
+            slopes_of_part = RowSlopes(**dict(zip(names, parts, strict=True)))
+            yield _Part(rows.v[which], slopes_of_part, request, fold)
 
 
 def _limit(model: Model, motion: Motion, of: str) -> tuple[float, str, list[_Part]]:
@@ -424,5 +425,5 @@ def gradient(
     >>> rows.shape, round(float(rows[60]), 6)
     ((361,), 1.123196)
     """
-    found = sensitivity(mechanism, of, at, by=by, configuration=configuration, motion=motion)
-    return {name: found[name] for name in found.derivatives}
+    result = sensitivity(mechanism, of, at, by=by, configuration=configuration, motion=motion)
+    return {name: result[name] for name in result.derivatives}

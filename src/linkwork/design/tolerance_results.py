@@ -42,7 +42,7 @@ class SensitivityStatus(CodedEnum):
         "at a dead point or change point positions have no finite sensitivity at a fixed input: "
         "ask for another input value, or for limit.lower or limit.upper"
     )
-    NO_POSITION = "there is no position: see its own status"
+    NO_POSITION = "there is no position: see the status of the position"
 
 
 @dataclass(frozen=True, kw_only=True, eq=False, repr=False)
@@ -109,12 +109,12 @@ class Sensitivity:
         UnknownNameError
             Lists the numbers.
         """
-        own = find_spelling(name, self.derivatives)
-        if own not in self.derivatives:
+        spelled = find_spelling(name, self.derivatives)
+        if spelled not in self.derivatives:
             raise UnknownNameError(
                 f'there is no derivative by "{name}" {choices("numbers", self.derivatives, name)}'
             )
-        value = self.derivatives[own]
+        value = self.derivatives[spelled]
         return float(value) if value.ndim == 0 else value
 
     @property
@@ -172,26 +172,26 @@ def per(unit: str, other: str) -> str:
     return f"{unit or '1'}/{other}"
 
 
-def sensitivity_summary(found: Sensitivity) -> Summary:
+def sensitivity_summary(result: Sensitivity) -> Summary:
     """The derivatives, the largest first, for terminals."""
     rows = []
-    if found.status is not SensitivityStatus.FOUND:
-        rows.append(("status", found.status.value))
+    if result.status is not SensitivityStatus.FOUND:
+        rows.append(("status", result.status.value))
     # without a position there is nothing but the reason
-    names = found.effective if np.isfinite(found.value).any() else ()
+    names = result.effective if np.isfinite(result.value).any() else ()
     for name in names:
-        value, unit = found.derivatives[name], found.unit_by(name)
+        value, unit = result.derivatives[name], result.unit_by(name)
         most = value.item() if value.ndim == 0 else _size(value)
         rows.append((name, f"{'' if value.ndim == 0 else 'at most '}{most:.6g} {unit}".rstrip()))
     where = ""
-    if found.inputs and found.value.ndim == 0:
-        at = {name: float(value) for name, value in found.inputs.items()}
-        where = f" at {driven_text(at, found.input_units)}"
-    return Summary(f"Sensitivity of {found.of} of {found.mechanism}{where}", tuple(rows))
+    if result.inputs and result.value.ndim == 0:
+        at = {name: float(value) for name, value in result.inputs.items()}
+        where = f" at {driven_text(at, result.input_units)}"
+    return Summary(f"Sensitivity of {result.of} of {result.mechanism}{where}", tuple(rows))
 
 
 # ----------------------------------------------------------------------
-# Tolerances of a quantity: what deviations of dimensions and clearances of pins do to it.
+# Tolerances of a quantity: how deviations of dimensions and clearances of pins affect it.
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -242,7 +242,7 @@ class Sampled:
     Parameters
     ----------
     designs, found : int
-        How many were drawn, and how many have the quantity.
+        The number of drawn designs, and of designs that have the quantity.
     seed : int
     mean, deviation : float
         Of the quantity.
@@ -294,7 +294,7 @@ class Tolerance:
         edge of their holes in any direction.
     status : SensitivityStatus
     sampled : Sampled, optional
-        Monte Carlo, if asked for.
+        Monte Carlo, if requested.
 
     Examples
     --------
@@ -353,23 +353,23 @@ class Tolerance:
         return wings.use("app.pages.notebook").tolerance_html(self)
 
 
-def tolerance_summary(found: Tolerance) -> Summary:
+def tolerance_summary(tolerance: Tolerance) -> Summary:
     """The tolerance and its largest contributions, for terminals."""
-    at = f" at {found.where}" if found.where else ""
-    head = f"Tolerance of {found.of} of {found.mechanism}{at}"
-    if found.status is not SensitivityStatus.FOUND:
-        return Summary(head, (("status", found.status.value),))
-    unit = found.unit
+    at = f" at {tolerance.where}" if tolerance.where else ""
+    head = f"Tolerance of {tolerance.of} of {tolerance.mechanism}{at}"
+    if tolerance.status is not SensitivityStatus.FOUND:
+        return Summary(head, (("status", tolerance.status.value),))
+    unit = tolerance.unit
     rows = [
-        ("value", f"{found.value:.10g} {unit}".rstrip()),
-        ("worst case", f"± {found.worst_case:.6g} {unit}".rstrip()),
-        ("root sum square", f"{found.root_sum_square:.6g} {unit}".rstrip()),
+        ("value", f"{tolerance.value:.10g} {unit}".rstrip()),
+        ("worst case", f"± {tolerance.worst_case:.6g} {unit}".rstrip()),
+        ("root sum square", f"{tolerance.root_sum_square:.6g} {unit}".rstrip()),
     ]
-    if found.sampled is not None:
-        drawn = found.sampled
+    if tolerance.sampled is not None:
+        drawn = tolerance.sampled
         rows.append(("sampled", f"{drawn.deviation:.6g} {unit}, {drawn.found} designs"))
     rows += [
         (part.name if part.kind == "dimension" else f"pin {part.name}", f"{100 * part.share:.1f} %")
-        for part in found.contributions
+        for part in tolerance.contributions
     ]
     return Summary(head, tuple(rows))

@@ -57,7 +57,7 @@ def stated_deviations(
     numbers: Mapping[str, float] | None = None,
     clearances: Mapping[str, float] | None = None,
 ) -> Deviations:
-    """Those given, or those of the file.
+    """The stated deviations and clearances, or those of the file.
 
     Raises
     ------
@@ -91,8 +91,8 @@ def stated_deviations(
     return Deviations(numbers=spread, clearances=play)
 
 
-def _size(name: str, given: float) -> float:
-    size = finite_number(name, given)
+def _size(name: str, value: float) -> float:
+    size = finite_number(name, value)
     if size < 0:
         raise InputError(f'"{name}" must not deviate by a negative number, got {size:g}')
     return size
@@ -102,7 +102,7 @@ def tolerance_of(
     model: Model,
     solved: Position | Motion,
     of: str,
-    given: Deviations,
+    deviations: Deviations,
     *,
     samples: int = 0,
     seed: int = 1,
@@ -115,31 +115,31 @@ def tolerance_of(
         For a quantity that is not known, or whose derivatives are not.
     """
     count, start = whole_number("samples", samples), whole_number("seed", seed)
-    names = [number.name for number in given.numbers]
-    pins = tuple((link, p) for p in given.clearances for link in pins_of(model.description)[p])
+    names = [number.name for number in deviations.numbers]
+    pins = tuple((link, p) for p in deviations.clearances for link in pins_of(model.description)[p])
     if isinstance(solved, Motion):
-        found = sensitivity_of_motion(model, solved, of, names)
+        result = sensitivity_of_motion(model, solved, of, names)
         moved = play_of_motion(model, solved, of, pins)
     else:
-        found = sensitivity_of_position(model, solved, of, names)
+        result = sensitivity_of_position(model, solved, of, names)
         moved = play_of_position(model, solved, of, pins)
     forces = _pin_forces(pins, moved)
-    parts = list(_contributions(model, found, given, forces))
+    parts = list(_contributions(model, result, deviations, forces))
     total = math.fsum(part.standard**2 for part in parts)
-    status = found.status
+    status = result.status
     if status is SensitivityStatus.FOUND and not math.isfinite(total):
         status = SensitivityStatus.CORNER
     shared = [_with_share(part, total) for part in parts]
     sampled = None
     if count and status is not SensitivityStatus.NO_POSITION:
-        sampled = _sample(model, solved, of, given, forces, (count, start))
+        sampled = _sample(model, solved, of, deviations, forces, (count, start))
     return Tolerance(
-        mechanism=found.mechanism,
-        of=found.of,
-        unit=found.unit,
-        inputs={name: float(value) for name, value in found.inputs.items()},
-        input_units=found.input_units,
-        value=float(found.value),
+        mechanism=result.mechanism,
+        of=result.of,
+        unit=result.unit,
+        inputs={name: float(value) for name, value in result.inputs.items()},
+        input_units=result.input_units,
+        value=float(result.value),
         contributions=tuple(sorted(shared, key=lambda part: (-part.share, part.name))),
         status=status,
         sampled=sampled,
@@ -149,8 +149,8 @@ def tolerance_of(
 def _pin_forces(pins: tuple[tuple[str, str], ...], moved: Array) -> dict[str, Array]:
     """The forces between links at every pin for a unit load at the quantity, (rows,).
 
-    A displacement of one link is one of the others the other way: the link with the smallest
-    effect stays, the others move against it.
+    A displacement of one link equals an opposite displacement of all other links: the link with
+    the smallest effect stays, the other links move against it.
     """
     effects: dict[str, list[Array]] = {}
     for (_, point), rates in zip(pins, moved, strict=True):
@@ -159,24 +159,25 @@ def _pin_forces(pins: tuple[tuple[str, str], ...], moved: Array) -> dict[str, Ar
 
 
 def _contributions(
-    model: Model, found: Sensitivity, given: Deviations, forces: Mapping[str, Array]
+    model: Model, sensitivity: Sensitivity, deviations: Deviations, forces: Mapping[str, Array]
 ) -> Iterator[Contribution]:
     """Every dimension and pin, without its share yet."""
     length = model.description.length
-    for number, size in given.numbers.items():
-        rate = float(found.derivatives[number.name])
+    for number, size in deviations.numbers.items():
+        rate = float(sensitivity.derivatives[number.name])
         change = abs(rate) * size
         yield Contribution(
-            name=number.name, kind="dimension", sensitivity=rate, unit=found.unit_by(number.name),
-            deviation=size, deviation_unit=found.units[number.name], worst=change, standard=change,
-            share=math.nan,
+            name=number.name, kind="dimension", sensitivity=rate,
+            unit=sensitivity.unit_by(number.name), deviation=size,
+            deviation_unit=sensitivity.units[number.name], worst=change, standard=change,
+            share=math.nan
         )  # fmt: skip
-    for point, size in given.clearances.items():
+    for point, size in deviations.clearances.items():
         force = float(forces[point].sum())
         # eq. (125): c |R| cos ψ for all directions ψ alike
         standard = size * math.sqrt(0.5 * float((forces[point] ** 2).sum()))
         yield Contribution(
-            name=point, kind="clearance", sensitivity=force, unit=per(found.unit, length),
+            name=point, kind="clearance", sensitivity=force, unit=per(sensitivity.unit, length),
             deviation=size, deviation_unit=length, worst=force * size, standard=standard,
             share=math.nan,
         )  # fmt: skip
@@ -190,13 +191,13 @@ def _sample(
     model: Model,
     solved: Position | Motion,
     of: str,
-    given: Deviations,
+    deviations: Deviations,
     forces: Mapping[str, Array],
     drawn: tuple[int, int],
 ) -> Sampled:
     """Draw designs with normal numbers; clearances add their first-order effect."""
     description, (count, seed) = model.description, drawn
-    spread = {q: size for q, size in given.numbers.items() if size > 0.0}
+    spread = {q: size for q, size in deviations.numbers.items() if size > 0.0}
     if spread:
         plan = random(
             count, {q.name: Normal(q.of(description), size) for q, size in spread.items()}, seed
@@ -206,7 +207,7 @@ def _sample(
         values = np.full(count, float(_nominal(model, solved, of)))
     # another stream than that of the numbers
     generator = np.random.Generator(np.random.Philox(seed + 1))
-    for point, size in given.clearances.items():
+    for point, size in deviations.clearances.items():
         for force in forces[point]:
             values = values + size * force * np.cos(generator.uniform(0.0, FULL_TURN, count))
     there = values[np.isfinite(values)]
@@ -241,8 +242,8 @@ def _of_designs(
         return wings.use("families.family").family_of(model, plan).reduced([of])[of]
     # every design is followed from the position that all deviations start from
     one = _at_one_row(model, solved)
-    found = wings.use("families.family").family_of(one, plan).sweep(certify=False)
-    return found[of][:, 0]
+    swept = wings.use("families.family").family_of(one, plan).sweep(certify=False)
+    return swept[of][:, 0]
 
 
 def _at_one_row(model: Model, position: Position) -> Model:
@@ -296,7 +297,7 @@ def tolerance(
     Raises
     ------
     UnknownNameError, InputError
-        If a name is not known, a deviation is negative, or none is given.
+        If a name is not known, a deviation is negative, or there is none.
 
     Examples
     --------
@@ -306,7 +307,7 @@ def tolerance(
     >>> round(found.worst_case, 6), found.contributions[0].name
     (0.057301, 'B A')
     """
-    given = stated_deviations(mechanism.model, deviations, clearances)
+    stated = stated_deviations(mechanism.model, deviations, clearances)
     solved: Motion | Position
     if is_of_motion(of):
         if at is not None:
@@ -314,4 +315,4 @@ def tolerance(
         solved = mechanism.sweep(configuration=configuration) if motion is None else motion
     else:
         solved = mechanism.solve(at, configuration=configuration)
-    return tolerance_of(mechanism.model, solved, of, given, samples=samples, seed=seed)
+    return tolerance_of(mechanism.model, solved, of, stated, samples=samples, seed=seed)

@@ -1,4 +1,4 @@
-"""Mechanism files of other programs: read as linkages, with a list of what was left out."""
+"""Mechanism files of other programs: read as linkages, with a list of omitted parts."""
 
 from __future__ import annotations
 

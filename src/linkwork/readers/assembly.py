@@ -1,4 +1,4 @@
-"""A file of another program: its text, numbers, refusals, and the list of what is left out."""
+"""A file of another program: its text, numbers, refusals, and the list of omitted parts."""
 
 from __future__ import annotations
 
@@ -42,7 +42,7 @@ class LeftOut:
     Parameters
     ----------
     what : str
-        What it is, and why.
+        The omitted part, and the reason.
     places : tuple of str
         Where it is in the file.
 
@@ -62,7 +62,7 @@ class LeftOut:
 
 
 class Source:
-    """The bytes of a file, its name for messages, and what was left out so far."""
+    """The bytes of a file, its name for messages, and the parts omitted so far."""
 
     def __init__(self, data: bytes, name: str) -> None:
         self.data, self.name = data, name
@@ -73,11 +73,11 @@ class Source:
     @property
     def left_out(self) -> tuple[LeftOut, ...]:
         """What was left out, in the file's order."""
-        found = self._left_out.items()
-        return tuple(LeftOut(what=what, places=tuple(places)) for what, places in found)
+        left_out = self._left_out.items()
+        return tuple(LeftOut(what=what, places=tuple(places)) for what, places in left_out)
 
     def leave_out(self, place: str, what: str) -> None:
-        """Note what is not carried over."""
+        """Note a part that is not carried over."""
         self._left_out.setdefault(what, {})[place] = None
 
     def refuse(
@@ -104,36 +104,36 @@ class Source:
             self.refuse("contains a NUL character: not a text file")
         return text
 
-    def number(self, given: object, what: str, line: int | None = None) -> float:
+    def number(self, entry: object, what: str, line: int | None = None) -> float:
         """A finite number that is a text or a number of JSON."""
-        if isinstance(given, str) and _NUMBER.fullmatch(given.strip()):
-            number = float(given)
-        elif isinstance(given, int | float) and not isinstance(given, bool):
-            number = float(given) if abs(given) <= LARGEST_NUMBER else math.inf
+        if isinstance(entry, str) and _NUMBER.fullmatch(entry.strip()):
+            number = float(entry)
+        elif isinstance(entry, int | float) and not isinstance(entry, bool):
+            number = float(entry) if abs(entry) <= LARGEST_NUMBER else math.inf
         else:
-            self.refuse(f"{what} must be a number, got {_shown(given)}", line)
+            self.refuse(f"{what} must be a number, got {_shown(entry)}", line)
         if not abs(number) <= LARGEST_NUMBER:
-            self.refuse(f"{what} is {_shown(given)}: at most {LARGEST_NUMBER:g}", line)
+            self.refuse(f"{what} is {_shown(entry)}: at most {LARGEST_NUMBER:g}", line)
         return number
 
-    def numbers(self, given: str, count: int, what: str, line: int | None = None) -> list[float]:
+    def numbers(self, text: str, count: int, what: str, line: int | None = None) -> list[float]:
         """So many numbers between spaces."""
-        words = given.split()
+        words = text.split()
         if len(words) != count:
             self.refuse(f"{what} must be {count} numbers, got {len(words)}", line)
         return [self.number(word, what, line) for word in words]
 
-    def chosen(self, given: str, known: Mapping[str, str], what: str) -> str:
+    def chosen(self, word: str, known: Mapping[str, str], what: str) -> str:
         """The word that stands for an entry of a list, or its first word, with a note."""
-        if given in known:
-            return known[given]
+        if word in known:
+            return known[word]
         usual = next(iter(known.values()))
-        self.leave_out(what, f"unknown {_shown(given)}, {usual} is assumed")
+        self.leave_out(what, f"unknown {_shown(word)}, {usual} is assumed")
         return usual
 
 
-def _shown(given: object) -> str:
-    text = given if isinstance(given, str) else type(given).__name__
+def _shown(entry: object) -> str:
+    text = entry if isinstance(entry, str) else type(entry).__name__
     return '"' + "".join(c if c.isprintable() else "?" for c in text[:_SHOWN]) + '"'
 
 
@@ -168,31 +168,31 @@ class Assembly:
         self.renamed: dict[str, str] = {}
         self._taken = {canonical(GROUND)}
 
-    def new_name(self, wanted: str, kind: str) -> str:
-        """A name like the wanted one that formulas can use and nothing else has."""
-        text = re.sub(r"\W", "_", wanted.strip()[:_LONGEST_NAME]).strip("_")
+    def new_name(self, like: str, kind: str) -> str:
+        """A free name like the preferred one that formulas can use."""
+        text = re.sub(r"\W", "_", like.strip()[:_LONGEST_NAME]).strip("_")
         # the nearest spelling first, so that a person recognizes the name
-        tried = (wanted, text, f"{kind}{text}", f"{kind}_{text}", kind)
-        own = free_name(next(filter(_is_usable, tried)), self._taken)
-        if own != wanted and wanted:
-            self.renamed[f'{_KINDS.get(kind, kind)} "{wanted[:_LONGEST_NAME]}"'] = own
-        return own
+        tried = (like, text, f"{kind}{text}", f"{kind}_{text}", kind)
+        name = free_name(next(filter(_is_usable, tried)), self._taken)
+        if name != like and like:
+            self.renamed[f'{_KINDS.get(kind, kind)} "{like[:_LONGEST_NAME]}"'] = name
+        return name
 
-    def add_point(self, wanted: str, place: complex, fixed: bool = False) -> str:
+    def add_point(self, like: str, place: complex, fixed: bool = False) -> str:
         """A point; returns its name."""
         if len(self.points) == _MOST:
             self.source.refuse(f"has more than {_MOST} points")
-        name = self.new_name(wanted, "P")
+        name = self.new_name(like, "P")
         self.points[name] = place
         if fixed:
             self.fixed.add(name)
         return name
 
-    def add_link(self, wanted: str, points: Iterable[str] = ()) -> str:
+    def add_link(self, like: str, points: Iterable[str] = ()) -> str:
         """A link; returns its name."""
         if len(self.links) == _MOST:
             self.source.refuse(f"has more than {_MOST} links")
-        name = self.new_name(wanted, "link")
+        name = self.new_name(like, "link")
         self.links[name] = list(dict.fromkeys(points))
         return name
 
@@ -224,17 +224,17 @@ class Assembly:
             self.put_on(on, end)
         return first, second
 
-    def add_slot(self, wanted: str, point: str, on: str, line: tuple[str, str]) -> str:
+    def add_slot(self, like: str, point: str, on: str, line: tuple[str, str]) -> str:
         """A pin in a slot of a link; returns the name of the displacement."""
-        return self.add_part("slots", wanted, "s", point=point, on=on, line=line)
+        return self.add_part("slots", like, "s", point=point, on=on, line=line)
 
-    def add_slider(self, wanted: str, link: str, point: str, on: str, line: tuple[str, str]) -> str:
+    def add_slider(self, like: str, link: str, point: str, on: str, line: tuple[str, str]) -> str:
         """A link that slides without turning; returns the name of the displacement."""
-        return self.add_part("sliders", wanted, "s", link=link, points=(point,), on=on, line=line)
+        return self.add_part("sliders", like, "s", link=link, points=(point,), on=on, line=line)
 
-    def add_part(self, table: str, wanted: str, kind: str, **fields: Any) -> str:
-        """A part of a table of the file, with a name like the wanted one; returns the name."""
-        name = self.new_name(wanted, kind)
+    def add_part(self, table: str, like: str, kind: str, **fields: Any) -> str:
+        """Add a part to a table, with a name like the preferred one; returns the name."""
+        name = self.new_name(like, kind)
         part: Callable[..., Any] = PARTS[table]
         self.parts[table].append(part(name=name, **fields))
         return name
@@ -245,7 +245,7 @@ class Assembly:
         Raises
         ------
         MechanismFileError
-            If what the file contains is not a linkage, with every problem found.
+            If the file does not contain a linkage; lists all problems.
         """
         into = {name: name for name in (GROUND, *self.links)}
         # a merged link may have two points at one place, and points merged may join links
@@ -282,13 +282,13 @@ class Assembly:
         for name in (GROUND, *self.links):
             # equal to the last digit only: points that are merely close may be a short bar
             first: dict[complex, str] = {}
-            own = self.carries(name)
-            for point in [point for point in self.points if point in own]:
+            carried = self.carries(name)
+            for point in [point for point in self.points if point in carried]:
                 kept = first.setdefault(self.points[point], point)
                 if kept != point and point not in same and kept not in same:
                     same[point] = kept
                     self.source.leave_out(
-                        f'point "{point}"', f'as a point of its own: it is "{kept}" of {name}'
+                        f'point "{point}"', f'as a separate point: it is "{kept}" of {name}'
                     )
         # everything that names a point follows
         for point in same:
@@ -316,14 +316,14 @@ class Assembly:
             if lost == GROUND:  # ground stays, otherwise the first in the file
                 kept, lost = lost, kept
             self._merge(kept, lost)
-            into.update({name: kept for name, own in into.items() if own == lost})
+            into.update({name: kept for name, target in into.items() if target == lost})
         return bool(pairs)
 
     def _merge(self, kept: str, lost: str) -> None:
         shared = sorted(self.carries(kept) & self.carries(lost))[:2]
         how = "it is fixed" if kept == GROUND else f'it moves with "{kept}"'
         self.source.leave_out(
-            f'link "{lost}"', f"as a link of its own: by {' and '.join(shared)} {how}"
+            f'link "{lost}"', f"as a separate link: by {' and '.join(shared)} {how}"
         )
         for point in self.links.pop(lost):
             self.put_on(kept, point)
@@ -332,8 +332,8 @@ class Assembly:
         """Pairs of links, or of ground and a link, with two points in common."""
         at: dict[str, list[str]] = {}
         for name in (GROUND, *self.links):
-            own = self.carries(name)
-            for point in (point for point in self.points if point in own):
+            carried = self.carries(name)
+            for point in (point for point in self.points if point in carried):
                 at.setdefault(point, []).append(name)
         # by points, in the file's order, since most links share no point
         common = Counter(pair for names in at.values() for pair in combinations(names, 2))
@@ -369,21 +369,21 @@ class Assembly:
 def _renamed(part: Any, names: Mapping[str, str]) -> Any:
     """A part with other names of points or links."""
     changes: dict[str, Any] = {}
-    for key, own in vars(part).items():
-        if isinstance(own, tuple):
-            changes[key] = tuple(names.get(n, n) if isinstance(n, str) else n for n in own)
-        elif isinstance(own, str) and key != "name":
-            changes[key] = names.get(own, own)
+    for key, entry in vars(part).items():
+        if isinstance(entry, tuple):
+            changes[key] = tuple(names.get(n, n) if isinstance(n, str) else n for n in entry)
+        elif isinstance(entry, str) and key != "name":
+            changes[key] = names.get(entry, entry)
     return replace(part, **changes)
 
 
 def _names(part: Any) -> Iterator[str]:
     """The names in the fields of a part."""
-    for own in vars(part).values():
-        if isinstance(own, str):
-            yield own
-        elif isinstance(own, tuple):
-            yield from (name for name in own if isinstance(name, str))
+    for entry in vars(part).values():
+        if isinstance(entry, str):
+            yield entry
+        elif isinstance(entry, tuple):
+            yield from (name for name in entry if isinstance(name, str))
 
 
 @lru_cache(maxsize=4096)
@@ -422,30 +422,30 @@ def add_joints(assembly: Assembly, rows: Sequence[JointRow]) -> None:
     """Add joints in the file's order, and the links that they name."""
     links = {GROUND: GROUND}
     for row in rows:
-        for wanted in row.links:
-            if wanted not in links:
-                links[wanted] = assembly.add_link(wanted)
+        for name in row.links:
+            if name not in links:
+                links[name] = assembly.add_link(name)
     driven: list[tuple[JointRow, list[str]]] = []
     # pins first: sliders reuse a pin of their link at the same place
     for row in sorted(rows, key=lambda row: row.kind != "R"):
-        own = [links[wanted] for wanted in dict.fromkeys(row.links)]
+        joined = [links[name] for name in dict.fromkeys(row.links)]
         if row.kind == "R":
             point = assembly.add_point(row.name, row.at)
-            for link in own:
+            for link in joined:
                 assembly.put_on(link, point)
             if row.input:
-                driven.append((row, own))
-        elif len(own) < 2:
+                driven.append((row, joined))
+        elif len(joined) < 2:
             assembly.source.leave_out(row.place, f"joint of type {row.kind} with one link")
         else:
-            _add_slide(assembly, row, own)
+            _add_slide(assembly, row, joined)
     # only now do links have all their points
-    for row, own in driven:
-        drive_joint(assembly, row.place, own, row.speed)
+    for row, joined in driven:
+        drive_joint(assembly, row.place, joined, row.speed)
 
 
-def _add_slide(assembly: Assembly, row: JointRow, own: list[str]) -> None:
-    on, *moving = own
+def _add_slide(assembly: Assembly, row: JointRow, joined: list[str]) -> None:
+    on, *moving = joined
     point = _point_at(assembly, row, moving)
     for link in moving:
         assembly.put_on(link, point)
@@ -517,7 +517,7 @@ class Exported:
 
 
 class Drawn:
-    """A linkage and the places of its points in an assembled position; notes on what is left out.
+    """A linkage and the places of its points in an assembled position; notes on omitted parts.
 
     Raises
     ------
@@ -540,8 +540,8 @@ class Drawn:
             self.leave_out(name, "mass")
         for which in linkage.inputs:
             # the driven pin itself can be written
-            given = (which.start, which.stop, which.step)
-            if given != (None, None, None) or which.law is not None:
+            table = (which.start, which.stop, which.step)
+            if table != (None, None, None) or which.law is not None:
                 self.leave_out(which.column, "range or law of the input")
 
     @property
@@ -550,16 +550,16 @@ class Drawn:
         return tuple(LeftOut(what=w, places=tuple(p)) for w, p in self._notes.items())
 
     def leave_out(self, place: str, what: str) -> None:
-        """Note what is not carried over."""
+        """Note a part that is not carried over."""
         self._notes.setdefault(what, {})[f'"{place}"'] = None
 
     def joints(self) -> Iterator[JointRow]:
-        """Pins of points, slots, and sliders, which lie at a point with a pin of its own."""
+        """Pins of points, slots, and sliders; a slider lies at a point that also has a pin."""
         slotted = {slot.point for slot in self.linkage.slots}
         for point, at in self.places.items():
             if point not in slotted:
-                own = self._carriers(point)
-                yield JointRow(place=point, kind="R", at=at, links=own, name=point)
+                carriers = self._carriers(point)
+                yield JointRow(place=point, kind="R", at=at, links=carriers, name=point)
         for slot in self.linkage.slots:
             moving = self._carriers(slot.point)
             yield self._slide("RP", slot.name, slot.point, (slot.on, *moving), slot.line)
@@ -580,8 +580,8 @@ class Drawn:
         return tuple(name for name, points in self.linkage.links.items() if point in points)
 
     def driven_pins(self) -> dict[str, Input]:
-        """The inputs by the points whose pins they drive; others are left out."""
-        found = {}
+        """The inputs by the points whose pins they drive; other inputs are left out."""
+        pins_of_inputs = {}
         for which in self.linkage.inputs:
             kind, name = which.drives
             pair = {name, which.relative_to or GROUND}
@@ -589,7 +589,7 @@ class Drawn:
             if kind == "link":
                 pins = [p for p in self.places if pair == set(self._carriers(p))]
             if pins:
-                found[pins[0]] = which
+                pins_of_inputs[pins[0]] = which
             else:
                 self.leave_out(which.column, "the input: it is no pin of two links")
-        return found
+        return pins_of_inputs

@@ -42,33 +42,33 @@ def import_command(file: str, output: str | None, form: str | None, as_json: boo
       linkwork import "https://app.pmksplus.com/?..." -o pmks.toml
     """
     check_outputs(file, output)
-    found = imported(file, form)
-    text = text_of(found.description)
+    result = imported(file, form)
+    text = text_of(result.description)
     if output is not None:
         write_text(output, [text])
     if as_json:
-        print_json(_data(found) | {"written": [output] if output else [], "text": text})
+        print_json(_data(result) | {"written": [output] if output else [], "text": text})
     else:
-        print_lines(_page(found, output))
+        print_lines(_page(result, output))
 
 
-def _data(found: Imported) -> dict[str, object]:
+def _data(imported: Imported) -> dict[str, object]:
     return {
-        "format": found.format,
-        "name": found.description.name,
-        "carried": found.carried,
-        "renamed": dict(found.renamed),
-        "missing": found.missing(),
-        "left_out": [{"what": own.what, "places": list(own.places)} for own in found.left_out],
+        "format": imported.format,
+        "name": imported.description.name,
+        "carried": imported.carried,
+        "renamed": dict(imported.renamed),
+        "missing": imported.missing(),
+        "left_out": [{"what": o.what, "places": list(o.places)} for o in imported.left_out],
     }
 
 
-def _page(found: Imported, output: str | None) -> list[str]:
-    """Name and counts, changed names, what was left out."""
-    head, *notes = str(found).splitlines()
-    lines = [*title_lines(found.description.name), *wrapped(head)]
+def _page(imported: Imported, output: str | None) -> list[str]:
+    """Name and counts, changed names, omitted parts."""
+    head, *notes = str(imported).splitlines()
+    lines = [*title_lines(imported.description.name), *wrapped(head)]
     lines += [line for note in notes for line in wrapped(note, "  ", "    ")]
-    if missing := found.missing():
+    if missing := imported.missing():
         lines += wrapped(f"still missing: {missing}", "  ", "    ")
     written = f"Wrote {output}." if output else "Nothing was written: add -o mechanism.toml"
     return [*lines, written]

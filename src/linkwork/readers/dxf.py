@@ -90,20 +90,20 @@ def read(source: Source) -> Assembly:
             assembly.trace.append(pin.name)
     driven = []
     for entity, path, closed in _paths(source, entities):
-        own = _pins_of(path, closed, pins)
+        along = _pins_of(path, closed, pins)
         place = f"line {entity.line}"
-        if entity.kind == "LINE" and (len(own) < 2 or not {path[0], path[-1]} <= own.keys()):
+        if entity.kind == "LINE" and (len(along) < 2 or not {path[0], path[-1]} <= along.keys()):
             source.leave_out(place, "line with an end at no circle")
-        elif len(own) < 2:
+        elif len(along) < 2:
             source.leave_out(place, "polyline with fewer than two circles at its corners")
         elif entity.layer in _GROUND_LAYERS:
-            assembly.fixed.update(own.values())
+            assembly.fixed.update(along.values())
         else:
-            link = assembly.add_link(f"L{len(assembly.links) + 1}", own.values())
+            link = assembly.add_link(f"L{len(assembly.links) + 1}", along.values())
             if entity.layer in _INPUT_LAYERS:
                 driven.append((place, link))
     for place, link in driven:
-        # without a pivot at ground the drawing does not say against what it turns
+        # without a pivot on ground the drawing does not show the reference of the angle
         pivots = [p for p in assembly.links[link] if p in assembly.fixed]
         drive_joint(assembly, place, [GROUND, link] if pivots else [link])
     if not driven:
@@ -127,7 +127,7 @@ def _pairs(source: Source) -> Iterator[tuple[int, int, str]]:
 def _entities(source: Source) -> tuple[str, list[_Entity]]:
     """The unit of the header, and the entities of the drawing, without those of blocks."""
     section = variable = units = ""
-    found: list[_Entity] = []
+    entities: list[_Entity] = []
     wait = False
     for line, code, value in _pairs(source):
         if code == 0:
@@ -136,22 +136,22 @@ def _entities(source: Source) -> tuple[str, list[_Entity]]:
             elif value == "ENDSEC":
                 section = ""
             elif section == "ENTITIES":
-                found.append(_Entity(value, line))
+                entities.append(_Entity(value, line))
         elif code == 2 and wait:
             section, wait = value, False
         elif section == "HEADER" and code == 9:
             variable = value
         elif section == "HEADER" and variable == "$INSUNITS" and code == 70:
             units = value
-        elif section == "ENTITIES" and found:
-            found[-1].codes.setdefault(code, []).append(value)
-    if not found:
+        elif section == "ENTITIES" and entities:
+            entities[-1].codes.setdefault(code, []).append(value)
+    if not entities:
         source.refuse("has no entities: a section ENTITIES with circles and lines is needed")
-    if len(found) > _MOST:
+    if len(entities) > _MOST:
         source.refuse(f"has more than {_MOST} entities")
-    for own in (own for own in found if own.is_on_sheet):
-        source.leave_out(f"line {own.line}", "entity of the sheet (paper space)")
-    return units, [own for own in found if not own.is_on_sheet]
+    for entity in (entity for entity in entities if entity.is_on_sheet):
+        source.leave_out(f"line {entity.line}", "entity of the sheet (paper space)")
+    return units, [entity for entity in entities if not entity.is_on_sheet]
 
 
 def _place(source: Source, entity: _Entity, x: str, y: str) -> complex:
@@ -217,12 +217,12 @@ def _paths(
 
 def _pins_of(path: list[complex], closed: bool, pins: list[_Pin]) -> dict[complex, str]:
     """The pins at the corners of a path and on its straight pieces, by their place on it."""
-    found: dict[complex, str] = {}
+    on_path: dict[complex, str] = {}
     for k, corner in enumerate(path):
         # lines may be drawn to the rim of a circle
         nearest = min(pins, key=lambda pin: abs(pin.at - corner), default=None)
         if nearest is not None and abs(nearest.at - corner) <= nearest.radius * (1.0 + _TOLERANCE):
-            found[corner] = nearest.name
+            on_path[corner] = nearest.name
         if k + 1 < len(path) or closed:
             end = path[(k + 1) % len(path)]
             inside = (
@@ -235,9 +235,9 @@ def _pins_of(path: list[complex], closed: bool, pins: list[_Pin]) -> dict[comple
                 else []
             )
             for _, name, at in inside:
-                if name not in found.values():
-                    found[at] = name
-    return found
+                if name not in on_path.values():
+                    on_path[at] = name
+    return on_path
 
 
 def _is_on(pin: _Pin, a: complex, b: complex) -> bool:

@@ -27,7 +27,7 @@ FORMATS: Mapping[str, ModuleType] = {
 #: Formats that are written as well.
 WRITERS = ("pmks", "pylinkage", "pyslvs")
 _HEAD = 4000
-#: Formats without a published description: what to do instead.
+#: Formats without a published description, with an alternative.
 _CLOSED = {
     ".sam": "files of SAM (ARTAS) have no published format: export a DXF drawing from SAM and "
     "import that",
@@ -36,7 +36,7 @@ _CLOSED = {
 
 @dataclass(frozen=True, kw_only=True)
 class Reading:
-    """A linkage of a file, its format, what was left out, and names that changed."""
+    """A linkage of a file, its format, omitted parts, and names that changed."""
 
     linkage: Linkage
     format: str
@@ -53,11 +53,11 @@ def carried(linkage: Linkage) -> dict[str, int]:
     """The numbers of points, links, parts by their table, and inputs, where there are any."""
     tables = ("points", "links", *PARTS)
     counts = {table: len(getattr(linkage, table)) for table in tables}
-    found = {what: count for what, count in counts.items() if count}
-    return found | {"inputs": len(linkage.inputs)}
+    present = {what: count for what, count in counts.items() if count}
+    return present | {"inputs": len(linkage.inputs)}
 
 
-def read_foreign(data: bytes, name: str, wanted: str | None = None) -> Reading:
+def read_foreign(data: bytes, name: str, form: str | None = None) -> Reading:
     """Read the file of another program.
 
     Parameters
@@ -65,7 +65,7 @@ def read_foreign(data: bytes, name: str, wanted: str | None = None) -> Reading:
     data : bytes
     name : str
         Its name; the suffix tells the format, otherwise its beginning.
-    wanted : str, optional
+    form : str, optional
         A key of :data:`FORMATS`.
 
     Raises
@@ -73,10 +73,10 @@ def read_foreign(data: bytes, name: str, wanted: str | None = None) -> Reading:
     MechanismFileError
         With the reason and its place in the file.
     UnknownNameError
-        If there is no such format.
+        If the format does not exist.
     """
     source = Source(data, name)
-    chosen = _named(wanted) if wanted is not None else _recognized(source)
+    chosen = _named(form) if form is not None else _recognized(source)
     assembly = FORMATS[chosen].read(source)
     assembly.name = assembly.name or Path(name).stem[:200]
     linkage = assembly.finish()
@@ -85,12 +85,10 @@ def read_foreign(data: bytes, name: str, wanted: str | None = None) -> Reading:
     )
 
 
-def _named(wanted: str) -> str:
-    if wanted not in FORMATS:
-        raise UnknownNameError(
-            f'there is no format "{wanted}" {choices("formats", FORMATS, wanted)}'
-        )
-    return wanted
+def _named(form: str) -> str:
+    if form not in FORMATS:
+        raise UnknownNameError(f'there is no format "{form}" {choices("formats", FORMATS, form)}')
+    return form
 
 
 def _recognized(source: Source) -> str:
@@ -101,16 +99,16 @@ def _recognized(source: Source) -> str:
     # a suffix such as .json or .xml says little, and content can be damaged
     by_suffix = [name for name, module in FORMATS.items() if suffix in module.SUFFIXES]
     by_content = [name for name, module in FORMATS.items() if module.matches(head)]
-    found = [name for name in by_content if name in by_suffix] or by_content or by_suffix
-    if not found:
+    matching = [name for name in by_content if name in by_suffix] or by_content or by_suffix
+    if not matching:
         known = choices("formats", FORMATS)
         source.refuse(
             f"is in no known format: give it the right suffix, or name the format {known}"
         )
-    return found[0]
+    return matching[0]
 
 
-def write_foreign(linkage: Linkage, places: Mapping[str, complex], wanted: str) -> Exported:
+def write_foreign(linkage: Linkage, places: Mapping[str, complex], form: str) -> Exported:
     """Write a linkage in a format of another program.
 
     Parameters
@@ -118,7 +116,7 @@ def write_foreign(linkage: Linkage, places: Mapping[str, complex], wanted: str) 
     linkage : Linkage
     places : Mapping[str, complex]
         The points in an assembled position.
-    wanted : str
+    form : str
         One of :data:`WRITERS`.
 
     Raises
@@ -126,7 +124,7 @@ def write_foreign(linkage: Linkage, places: Mapping[str, complex], wanted: str) 
     InputError
         If the format is not written, or has no equivalent of a part.
     """
-    if wanted not in WRITERS:
-        raise InputError(f'"{wanted}" is not written {choices("formats", WRITERS, wanted)}')
+    if form not in WRITERS:
+        raise InputError(f'"{form}" is not written {choices("formats", WRITERS, form)}')
     drawn = Drawn(linkage, places)
-    return Exported(text=FORMATS[wanted].write(drawn), left_out=drawn.left_out)
+    return Exported(text=FORMATS[form].write(drawn), left_out=drawn.left_out)

@@ -50,7 +50,7 @@ def _unpacked(source: Source) -> bytes:
             if _ENTRY not in packed.namelist():
                 source.refuse(f"is a ZIP file without {_ENTRY}")
             with packed.open(_ENTRY) as entry:
-                # the stated size may be wrong: what is read is bounded
+                # the stated size may be wrong: the amount read is bounded
                 data = entry.read(LARGEST + 1)
     except _BROKEN as error:
         source.refuse(f"is a damaged ZIP file: {str(error)[:80] or type(error).__name__}")
@@ -86,56 +86,56 @@ class _Construction:
     def __post_init__(self) -> None:
         self.assembly = Assembly(self.source, self.root.get("title"))
         self.assembly.length = "unit"
-        elements = {own.get("label"): own for own in self.root.all("element")}
+        elements = {element.get("label"): element for element in self.root.all("element")}
         made: set[str] = set()
-        for own in self.root.children:
-            if own.tag == "command":
+        for element in self.root.children:
+            if element.tag == "command":
                 # elements of commands follow them: a point without a command is free
-                made |= set(self._outputs(own))
-        for own in self.root.children:
-            if own.tag == "command":
-                self._command(own, elements)
-            elif own.tag == "expression":
-                made.add(own.get("label"))
-                self._expression(own, elements)
-            elif own.tag == "element":
-                self._element(own, made)
+                made |= set(self._outputs(element))
+        for element in self.root.children:
+            if element.tag == "command":
+                self._command(element, elements)
+            elif element.tag == "expression":
+                made.add(element.get("label"))
+                self._expression(element, elements)
+            elif element.tag == "element":
+                self._element(element, made)
         if not self.assembly.inputs:
             self.source.leave_out("the construction", "the input: no point moves on a circle")
 
-    def _place(self, own: Element) -> str:
-        return f"line {own.line}"
+    def _place(self, element: Element) -> str:
+        return f"line {element.line}"
 
-    def _outputs(self, own: Element) -> list[str]:
-        out = own.one("output")
+    def _outputs(self, element: Element) -> list[str]:
+        out = element.one("output")
         return [] if out is None else [name for name in out.attributes.values() if name]
 
-    def _element(self, own: Element, made: set[str]) -> None:
+    def _element(self, element: Element, made: set[str]) -> None:
         """A free object; those of commands were made before."""
-        kind, label = own.get("type"), own.get("label")
+        kind, label = element.get("type"), element.get("label")
         for tag in ("ggbscript", "javascript"):
-            if own.one(tag) is not None:
-                self.source.leave_out(self._place(own), "script: nothing is executed")
-        trace = own.one("trace")
+            if element.one(tag) is not None:
+                self.source.leave_out(self._place(element), "script: nothing is executed")
+        trace = element.one("trace")
         if trace is not None and trace.get("val") == "true" and label in self.points:
             self.assembly.trace.append(self.points[label])
         if label in made:
             return
         if kind == "point":
-            self._add_point(label, own, fixed=True)
+            self._add_point(label, element, fixed=True)
             if trace is not None and trace.get("val") == "true":
                 self.assembly.trace.append(self.points[label])
         elif kind in ("numeric", "angle"):
-            self.numbers[label] = own.one("slider") is not None
+            self.numbers[label] = element.one("slider") is not None
         else:
-            self.source.leave_out(self._place(own), f"element of type {kind[:20]}")
+            self.source.leave_out(self._place(element), f"element of type {kind[:20]}")
 
-    def _add_point(self, label: str, own: Element, fixed: bool = False) -> str:
-        coords = own.one("coords")
+    def _add_point(self, label: str, element: Element, fixed: bool = False) -> str:
+        coords = element.one("coords")
         if coords is None:
-            self.source.refuse(f'point "{label[:40]}" has no coordinates', own.line)
+            self.source.refuse(f'point "{label[:40]}" has no coordinates', element.line)
         if label in self.points:
-            self.source.refuse(f'two points are called "{label[:40]}"', own.line)
+            self.source.refuse(f'two points are called "{label[:40]}"', element.line)
         x, y, z = (self.source.number(coords.get(c, "1"), c, coords.line) for c in "xyz")
         if abs(z) < 1e-200:
             self.source.refuse(f'point "{label[:40]}" is at infinity', coords.line)
@@ -143,9 +143,9 @@ class _Construction:
         self.points[label] = self.assembly.add_point(label, complex(*place), fixed)
         return self.points[label]
 
-    def _expression(self, own: Element, elements: dict[str, Element]) -> None:
+    def _expression(self, expression: Element, elements: dict[str, Element]) -> None:
         """A formula: constant points and numbers only."""
-        label, text = own.get("label"), own.get("exp")
+        label, text = expression.get("label"), expression.get("exp")
         element = elements.get(label)
         constant = not any(word not in self.numbers for word in _WORD.findall(text))
         if constant and element is not None and element.get("type") == "point":
@@ -153,21 +153,21 @@ class _Construction:
         elif constant and element is not None:
             self.numbers[label] = any(self.numbers[word] for word in _WORD.findall(text))
         else:
-            self.source.leave_out(self._place(own), f'formula "{text[:40]}"')
+            self.source.leave_out(self._place(expression), f'formula "{text[:40]}"')
 
-    def _command(self, own: Element, elements: dict[str, Element]) -> None:
-        name, outputs = own.get("name"), self._outputs(own)
-        given = own.one("input")
+    def _command(self, element: Element, elements: dict[str, Element]) -> None:
+        name, outputs = element.get("name"), self._outputs(element)
+        input_element = element.one("input")
         # a0, a1, … a10: the longer name is the later one
-        entries = [] if given is None else given.attributes.items()
+        entries = [] if input_element is None else input_element.attributes.items()
         inputs = [v for _, v in sorted(entries, key=lambda entry: (len(entry[0]), entry[0]))]
         rule = _RULES.get(name)
         if rule is None or (not outputs and name != "Locus"):
-            self.source.leave_out(self._place(own), f"command {name[:40]}")
+            self.source.leave_out(self._place(element), f"command {name[:40]}")
             return
         why = rule(self, inputs, outputs, elements)
         if why:
-            self.source.leave_out(self._place(own), f"command {name}: {why}")
+            self.source.leave_out(self._place(element), f"command {name}: {why}")
 
     def _common(self, *points: str) -> str | None:
         """A link, or ground, that carries these points."""
@@ -184,39 +184,39 @@ class _Construction:
                 return False
         return True
 
-    def _add_circle(self, given: list[str], out: list[str], _: Any) -> str:
-        if len(given) != 2 or given[0] not in self.points:
+    def _add_circle(self, names: list[str], out: list[str], _: Any) -> str:
+        if len(names) != 2 or names[0] not in self.points:
             return "only a centre with a radius or a point is read"
-        center = self.points[given[0]]
-        through = self.points.get(given[1])
+        center = self.points[names[0]]
+        through = self.points.get(names[1])
         constant = (
-            self._is_constant(given[1]) if through is None else bool(self._common(center, through))
+            self._is_constant(names[1]) if through is None else bool(self._common(center, through))
         )
         if not constant:
             return "its radius varies"
         self.shapes[out[0]] = _Circle(center)
         return ""
 
-    def _add_segment(self, given: list[str], out: list[str], _: Any) -> str:
-        known = [self.points[name] for name in given if name in self.points]
-        if len(known) != 2 or len(given) != 2:
+    def _add_segment(self, names: list[str], out: list[str], _: Any) -> str:
+        known = [self.points[name] for name in names if name in self.points]
+        if len(known) != 2 or len(names) != 2:
             return "only two points are read"
         self.shapes[out[0]] = _Line(tuple(known))
         return ""
 
-    def _add_polygon(self, given: list[str], out: list[str], _: Any) -> str:
-        known = [self.points[name] for name in given if name in self.points]
-        if len(known) != len(given):
+    def _add_polygon(self, names: list[str], out: list[str], _: Any) -> str:
+        known = [self.points[name] for name in names if name in self.points]
+        if len(known) != len(names):
             return "only points are read"
         for name, a, b in zip(out[1:], known, [*known[1:], known[0]], strict=False):
             self.shapes[name] = _Line((a, b))
         return "" if self._common(*known) else "its points are on no common link: it is only drawn"
 
     def _add_driven_point(
-        self, given: list[str], out: list[str], elements: dict[str, Element]
+        self, names: list[str], out: list[str], elements: dict[str, Element]
     ) -> str:
         """A point that a person drags on a circle or a line."""
-        shape = self._shape(given[0]) if len(given) == 1 else None
+        shape = self._shape(names[0]) if len(names) == 1 else None
         element = elements.get(out[0])
         if shape is None or element is None:
             return "only circles and lines are read"
@@ -232,8 +232,8 @@ class _Construction:
             return ""
         return "the input: a driven slide, whose range the file does not state"
 
-    def _add_intersect(self, given: list[str], out: list[str], elements: dict[str, Element]) -> str:
-        shapes = [self._shape(name) for name in given[:2]]
+    def _add_intersect(self, names: list[str], out: list[str], elements: dict[str, Element]) -> str:
+        shapes = [self._shape(name) for name in names[:2]]
         if len(shapes) < 2 or any(shape is None for shape in shapes):
             return "only circles with constant radii and lines are read"
         lines = [shape for shape in shapes if isinstance(shape, _Line)]
@@ -250,20 +250,20 @@ class _Construction:
                 self._keep(shape, point)
         return ""
 
-    def _add_rotate(self, given: list[str], out: list[str], elements: dict[str, Element]) -> str:
+    def _add_rotate(self, names: list[str], out: list[str], elements: dict[str, Element]) -> str:
         element = elements.get(out[0])
         if (
-            len(given) != 3
+            len(names) != 3
             or element is None
-            or given[0] not in self.points
-            or given[2] not in self.points
+            or names[0] not in self.points
+            or names[2] not in self.points
         ):
             return "only points about points are read"
-        turned, center = self.points[given[0]], self.points[given[2]]
+        turned, center = self.points[names[0]], self.points[names[2]]
         on = self._common(turned, center)
-        words = [word for word in _WORD.findall(given[1].replace("°", "")) if word in self.numbers]
-        known = _WORD.sub("", given[1].replace("°", ""))
-        if on is None or (not words and _WORD.search(given[1].replace("°", ""))):
+        words = [word for word in _WORD.findall(names[1].replace("°", "")) if word in self.numbers]
+        known = _WORD.sub("", names[1].replace("°", ""))
+        if on is None or (not words and _WORD.search(names[1].replace("°", ""))):
             return "the distance from its centre or its angle varies"
         point = self._add_point(out[0], element)
         if any(self.numbers[word] for word in words):
@@ -273,12 +273,12 @@ class _Construction:
             self.assembly.put_on(on, point)
         return ""
 
-    def _add_midpoint(self, given: list[str], out: list[str], elements: dict[str, Element]) -> str:
-        shape = self.shapes.get(given[0]) if len(given) == 1 else None
+    def _add_midpoint(self, names: list[str], out: list[str], elements: dict[str, Element]) -> str:
+        shape = self.shapes.get(names[0]) if len(names) == 1 else None
         ends = (
             list(shape.points)
             if isinstance(shape, _Line)
-            else [self.points.get(n, "") for n in given]
+            else [self.points.get(n, "") for n in names]
         )
         on = self._common(*ends) if len(ends) == 2 and all(ends) else None
         if on is None or out[0] not in elements:
@@ -286,9 +286,9 @@ class _Construction:
         self.assembly.put_on(on, self._add_point(out[0], elements[out[0]]))
         return ""
 
-    def _add_locus(self, given: list[str], out: list[str], _: Any) -> str:
-        if given and given[0] in self.points:
-            self.assembly.trace.append(self.points[given[0]])
+    def _add_locus(self, names: list[str], out: list[str], _: Any) -> str:
+        if names and names[0] in self.points:
+            self.assembly.trace.append(self.points[names[0]])
             return ""
         return "only loci of points are read"
 

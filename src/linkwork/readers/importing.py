@@ -37,7 +37,7 @@ class Imported:
     left_out : tuple of LeftOut
         What was not carried over, with its places.
     renamed : Mapping[str, str]
-        Names that could not be kept, and what they became.
+        Names that could not be kept, with the new ones.
 
     Examples
     --------
@@ -117,14 +117,14 @@ def imported(source: str | Path, format: str | None = None) -> Imported:
     Returns
     -------
     Imported
-        With the description, and what was left out.
+        With the description and the omitted parts.
 
     Raises
     ------
     MechanismFileError
         If the file is damaged, too large or no linkage: the reason and its place.
     UnknownNameError
-        If there is no such format.
+        If the format does not exist.
 
     Examples
     --------
@@ -138,10 +138,10 @@ def imported(source: str | Path, format: str | None = None) -> Imported:
     ('pyslvs', 'the input: an expression does not state it')
     """
     # a path would make one stroke of the two in a link
-    given = source if isinstance(source, str) else str(as_path(source))
+    text = source if isinstance(source, str) else str(as_path(source))
     if format is not None and not isinstance(format, str):
         raise InputError(f"format must be a text, got {as_told(format)}")
-    data, name = _bytes_of(given)
+    data, name = _bytes_of(text)
     reading = read_foreign(data, name, format)
     return Imported(
         description=reading.linkage,
@@ -151,11 +151,11 @@ def imported(source: str | Path, format: str | None = None) -> Imported:
     )
 
 
-def _bytes_of(given: str) -> tuple[bytes, str]:
+def _bytes_of(text: str) -> tuple[bytes, str]:
     """The content of a file, or a link itself."""
-    if FORMATS["pmks"].matches(given) and not os.path.exists(given):
-        return given.encode("utf-8", "replace"), "the link"
-    return textfile.bytes_of(Path(given), given, LARGEST), given
+    if FORMATS["pmks"].matches(text) and not os.path.exists(text):
+        return text.encode("utf-8", "replace"), "the link"
+    return textfile.bytes_of(Path(text), text, LARGEST), text
 
 
 def exported(
@@ -181,7 +181,7 @@ def exported(
     Returns
     -------
     Exported
-        The text, and what it leaves out; :func:`imported` reads it back.
+        The text, and the parts that it omits; :func:`imported` reads it back.
 
     Raises
     ------

@@ -47,116 +47,116 @@ class _Document:
         self.points: dict[str, str] = {}
         self.links: dict[str, str] = {}
         connectors = self._mechanical(root, "connector")
-        links = [own for own in root.children if own.tag in _SIDES and self._is_mechanical(own)]
-        for own in connectors:
-            self._add_connector(own)
-        for own in links:
-            self._add_link(own)
+        links = [node for node in root.children if node.tag in _SIDES and self._is_mechanical(node)]
+        for node in connectors:
+            self._add_connector(node)
+        for node in links:
+            self._add_link(node)
         # links must be complete before gears are fastened and pins driven
-        for own in (*connectors, *links):
-            self._fasten(own)
-        for own in connectors:
-            self._drive_or_slide(own)
+        for node in (*connectors, *links):
+            self._fasten(node)
+        for node in connectors:
+            self._drive_or_slide(node)
         for ratios in root.all("ratios"):
             for ratio in ratios.all("ratio"):
                 self._add_ratio(ratio)
 
-    def _is_mechanical(self, own: Element) -> bool:
-        layer = own.get("layer", "0")
+    def _is_mechanical(self, element: Element) -> bool:
+        layer = element.get("layer", "0")
         number = int(layer) if layer.isascii() and layer.isdigit() and len(layer) < 12 else 0
         if number & _DRAWING_LAYER:
-            self.source.leave_out(f"line {own.line}", f"drawing element <{own.tag}>")
+            self.source.leave_out(f"line {element.line}", f"drawing element <{element.tag}>")
         return not number & _DRAWING_LAYER
 
     def _mechanical(self, root: Element, tag: str) -> list[Element]:
-        return [own for own in root.all(tag) if self._is_mechanical(own)]
+        return [element for element in root.all(tag) if self._is_mechanical(element)]
 
-    def _id(self, own: Element) -> str:
-        if not own.get("id"):
-            self.source.refuse(f"<{own.tag}> has no id", own.line)
-        return own.get("id")
+    def _id(self, element: Element) -> str:
+        if not element.get("id"):
+            self.source.refuse(f"<{element.tag}> has no id", element.line)
+        return element.get("id")
 
-    def _length(self, own: Element, key: str, default: str = "") -> float:
-        return self.scale * self.source.number(own.get(key, default), key, own.line)
+    def _length(self, element: Element, key: str, default: str = "") -> float:
+        return self.scale * self.source.number(element.get(key, default), key, element.line)
 
-    def _add_connector(self, own: Element) -> None:
-        key = self._id(own)
+    def _add_connector(self, element: Element) -> None:
+        key = self._id(element)
         if key in self.points:
-            self.source.refuse(f'two connectors have the id "{key[:40]}"', own.line)
-        x, y = (self._length(own, c) for c in "xy")
+            self.source.refuse(f'two connectors have the id "{key[:40]}"', element.line)
+        x, y = (self._length(element, c) for c in "xy")
         point = self.assembly.add_point(
-            own.get("name") or f"P{key}", complex(x, y), own.get("anchor") == "true"
+            element.get("name") or f"P{key}", complex(x, y), element.get("anchor") == "true"
         )
         self.points[key] = point
-        if own.get("draw") == "true":
+        if element.get("draw") == "true":
             self.assembly.trace.append(point)
-        if own.get("drawcircle"):
-            self.source.leave_out(f"line {own.line}", "drawn circle")
+        if element.get("drawcircle"):
+            self.source.leave_out(f"line {element.line}", "drawn circle")
 
-    def _add_link(self, own: Element) -> None:
-        key, place = self._id(own), f"line {own.line}"
+    def _add_link(self, element: Element) -> None:
+        key, place = self._id(element), f"line {element.line}"
         if key in self.links:
-            self.source.refuse(f'two links have the id "{key[:40]}"', own.line)
+            self.source.refuse(f'two links have the id "{key[:40]}"', element.line)
         points = []
-        for child in own.children:
+        for child in element.children:
             if child.tag not in ("connector", "fastenconnector"):
                 continue
             if child.get("id") not in self.points:
                 self.source.refuse(f'unknown connector "{child.get("id")[:40]}"', child.line)
             points.append(self.points[child.get("id")])
-        if own.get("actuator") == "true" and len(points) == 2 and points[0] != points[1]:
-            self._add_actuator(own, points)
+        if element.get("actuator") == "true" and len(points) == 2 and points[0] != points[1]:
+            self._add_actuator(element, points)
             return
-        self.links[key] = self.assembly.add_link(own.get("name") or f"link{key}", points)
-        if own.get("actuator") == "true":
+        self.links[key] = self.assembly.add_link(element.get("name") or f"link{key}", points)
+        if element.get("actuator") == "true":
             self.source.leave_out(place, "actuator with more than two connectors")
 
-    def _add_actuator(self, own: Element, points: list[str]) -> None:
-        wanted = own.get("name") or f"actuator{own.get('id')}"
-        name = self.assembly.add_part("cylinders", wanted, "actuator", between=tuple(points))
+    def _add_actuator(self, element: Element, points: list[str]) -> None:
+        preferred = element.get("name") or f"actuator{element.get('id')}"
+        name = self.assembly.add_part("cylinders", preferred, "actuator", between=tuple(points))
         a, b = (self.assembly.points[point] for point in points)
-        throw = self._length(own, "throw", "0")
+        throw = self._length(element, "throw", "0")
         if throw > 0:
             start = abs(b - a)
             which = Input(cylinder=name, start=start, stop=start + throw, step=throw / 100.0)
             self.assembly.inputs.append(which)
-        self.source.leave_out(f"line {own.line}", "strokes per minute of the actuator")
+        self.source.leave_out(f"line {element.line}", "strokes per minute of the actuator")
 
-    def _fasten(self, own: Element) -> None:
+    def _fasten(self, node: Element) -> None:
         """A gear or connector that is fixed on a link."""
-        to = own.get("fastenlink") or (own.get("fasten") if own.tag == "connector" else "")
+        to = node.get("fastenlink") or (node.get("fasten") if node.tag == "connector" else "")
         other = self.links.get(to)
-        if own.get("fastenconnector"):
-            self.source.leave_out(f"line {own.line}", "gear fastened to a connector")
+        if node.get("fastenconnector"):
+            self.source.leave_out(f"line {node.line}", "gear fastened to a connector")
         if other is None:
             return
-        if own.tag == "connector":
-            self.assembly.put_on(other, self.points[own.get("id")])
-        elif own.get("id") in self.links:
-            link = self.links[own.get("id")]
+        if node.tag == "connector":
+            self.assembly.put_on(other, self.points[node.get("id")])
+        elif node.get("id") in self.links:
+            link = self.links[node.get("id")]
             if self.assembly.carries(link) & self.assembly.carries(other):
                 self.assembly.parts["welds"].append(
                     PARTS["welds"].of_table({"links": [other, link]})
                 )
             else:
                 self.source.leave_out(
-                    f"line {own.line}", "fastened link without a common connector"
+                    f"line {node.line}", "fastened link without a common connector"
                 )
 
-    def _drive_or_slide(self, own: Element) -> None:
-        point, place = self.points[own.get("id")], f"line {own.line}"
-        if own.get("slider") == "true":
-            limits = [self.points.get(each.get("id")) for each in own.all("slidelimit")]
-            if own.get("slideradius") and self.source.number(
-                own.get("slideradius"), "slideradius", own.line
+    def _drive_or_slide(self, element: Element) -> None:
+        point, place = self.points[element.get("id")], f"line {element.line}"
+        if element.get("slider") == "true":
+            limits = [self.points.get(each.get("id")) for each in element.all("slidelimit")]
+            if element.get("slideradius") and self.source.number(
+                element.get("slideradius"), "slideradius", element.line
             ):
                 self.source.leave_out(place, "slide on an arc")
             elif len(limits) == 2 and limits[0] and limits[1] and limits[0] != limits[1]:
                 self._slide(place, point, (limits[0], limits[1]))
             else:
                 self.source.leave_out(place, "slide without two limits")
-        if own.get("input") == "true":
-            # gears turn with what they are fastened to
+        if element.get("input") == "true":
+            # gears turn with the links to which they are fastened
             pinned = [
                 n
                 for n in self.assembly.carriers(point)
@@ -164,8 +164,8 @@ class _Document:
             ]
             # a gear alone on its pin can be driven too
             pinned = pinned if len(pinned) == 2 else self.assembly.carriers(point)
-            rpm = own.get("rpm")
-            speed = f"{self.source.number(rpm, 'rpm', own.line)} rpm" if rpm else None
+            rpm = element.get("rpm")
+            speed = f"{self.source.number(rpm, 'rpm', element.line)} rpm" if rpm else None
             drive_joint(self.assembly, place, pinned, speed)
 
     def _slide(self, place: str, point: str, line: tuple[str, str]) -> None:
@@ -179,9 +179,9 @@ class _Document:
         else:
             self.source.leave_out(place, "slide whose limits are on no other link")
 
-    def _add_ratio(self, own: Element) -> None:
-        place = f"line {own.line}"
-        ends = [(self.links.get(link.get("id")), link) for link in own.all("link")]
+    def _add_ratio(self, element: Element) -> None:
+        place = f"line {element.line}"
+        ends = [(self.links.get(link.get("id")), link) for link in element.all("link")]
         wheels = [name for name, _ in ends if name and self.assembly.links.get(name)]
         if len(ends) != 2 or len(wheels) != 2 or wheels[0] == wheels[1]:
             self.source.leave_out(place, "ratio without two wheels")
@@ -192,17 +192,17 @@ class _Document:
         if not arms or min(sizes) <= 0 or centers[0] == centers[1]:
             self.source.leave_out(place, "ratio of wheels whose centres are on no common link")
             return
-        self._join(own, wheels, centers, arms[0], sizes)
+        self._join(element, wheels, centers, arms[0], sizes)
 
     def _join(
-        self, own: Element, wheels: list[str], centers: list[str], arm: str, sizes: list[float]
+        self, element: Element, wheels: list[str], centers: list[str], arm: str, sizes: list[float]
     ) -> None:
         pair = {"wheels": tuple(wheels), "centers": tuple(centers), "arm": arm}
-        if own.get("type") != "gears":
+        if element.get("type") != "gears":
             self.assembly.add_part("belts", "chain", "belt", **pair, radii=tuple(sizes))
-            if own.get("sizeassize") != "true":
+            if element.get("sizeassize") != "true":
                 self.source.leave_out(
-                    f"line {own.line}", "radii of the chain's wheels: the ratio is right"
+                    f"line {element.line}", "radii of the chain's wheels: the ratio is right"
                 )
             return
         a, b = (self.assembly.points[center] for center in centers)

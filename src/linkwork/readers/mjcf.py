@@ -60,25 +60,25 @@ class _World:
 
     def __post_init__(self) -> None:
         # sections of a kind are merged, the later one counts
-        given = {k: v for own in self.root.all("compiler") for k, v in own.attributes.items()}
-        self.radians = 1.0 if given.get("angle") == "radian" else math.pi / 180.0
-        if given.get("coordinate") == "global":
+        settings = {k: v for node in self.root.all("compiler") for k, v in node.attributes.items()}
+        self.radians = 1.0 if settings.get("angle") == "radian" else math.pi / 180.0
+        if settings.get("coordinate") == "global":
             self.source.refuse(
                 'coordinate="global" is not read, as MuJoCo does not any more: write coordinates '
                 "of the parent body",
                 next(self.root.all("compiler")).line,
             )
-        self.sequence = given.get("eulerseq", "xyz")
+        self.sequence = settings.get("eulerseq", "xyz")
         if not re.fullmatch("[xyzXYZ]{3}", self.sequence):
             self.source.refuse("eulerseq must be three of x, y, z")
         self.defaults: dict[str, dict[str, str]] = {"": {}}
-        for own in self.root.all("default"):
-            self._add_defaults(own, {})
-        for own in self.root.children:
-            if own.tag == "include":
-                self.source.leave_out(f"line {own.line}", "include: other files are not read")
-            elif own.tag not in _READ + _DRAWN:
-                self.source.leave_out(f"line {own.line}", f"section <{own.tag[:20]}>")
+        for node in self.root.all("default"):
+            self._add_defaults(node, {})
+        for node in self.root.children:
+            if node.tag == "include":
+                self.source.leave_out(f"line {node.line}", "include: other files are not read")
+            elif node.tag not in _READ + _DRAWN:
+                self.source.leave_out(f"line {node.line}", f"section <{node.tag[:20]}>")
         worlds = list(self.root.all("worldbody"))
         if not worlds:
             self.source.refuse("has no <worldbody>", self.root.line)
@@ -88,45 +88,45 @@ class _World:
         for world in worlds:
             self._fill(ground, world, "")
 
-    def _add_defaults(self, own: Element, above: dict[str, str]) -> None:
-        joint = own.one("joint")
-        mine = {**above, **({} if joint is None else joint.attributes)}
-        name = own.get("class", "main")
-        self.defaults[name] = mine
+    def _add_defaults(self, element: Element, above: dict[str, str]) -> None:
+        joint = element.one("joint")
+        defaults = {**above, **({} if joint is None else joint.attributes)}
+        name = element.get("class", "main")
+        self.defaults[name] = defaults
         # the first class applies to elements without one
         if name == "main":
-            self.defaults[""] = mine
-        for inner in own.all("default"):
-            self._add_defaults(inner, mine)
+            self.defaults[""] = defaults
+        for inner in element.all("default"):
+            self._add_defaults(inner, defaults)
 
-    def _numbers(self, own: Element, key: str, count: int, default: str) -> list[float]:
-        return self.source.numbers(own.get(key, default), count, key, own.line)
+    def _numbers(self, element: Element, key: str, count: int, default: str) -> list[float]:
+        return self.source.numbers(element.get(key, default), count, key, element.line)
 
-    def _turn(self, own: Element) -> Array:
-        if own.get("quat"):
-            w, x, y, z = self._numbers(own, "quat", 4, "")
+    def _turn(self, tag: Element) -> Array:
+        if tag.get("quat"):
+            w, x, y, z = self._numbers(tag, "quat", 4, "")
             return quaternion(w, x, y, z)
-        if own.get("axisangle"):
-            *axis, angle = self._numbers(own, "axisangle", 4, "")
+        if tag.get("axisangle"):
+            *axis, angle = self._numbers(tag, "axisangle", 4, "")
             return turn_about(axis, angle * self.radians)
-        if own.get("euler"):
+        if tag.get("euler"):
             turn = np.eye(3)
             for letter, angle in zip(
-                self.sequence, self._numbers(own, "euler", 3, ""), strict=True
+                self.sequence, self._numbers(tag, "euler", 3, ""), strict=True
             ):
                 step = turn_about(np.eye(3)["xyz".index(letter.lower())], angle * self.radians)
                 # small letters turn about moving axes
                 turn = turn @ step if letter.islower() else step @ turn
             return turn
         for key in ("xyaxes", "zaxis"):
-            if own.get(key):
-                self.source.refuse(f"{key} is not read: write quat, euler or axisangle", own.line)
+            if tag.get(key):
+                self.source.refuse(f"{key} is not read: write quat, euler or axisangle", tag.line)
         return np.eye(3)
 
-    def _fill(self, body: Body, own: Element, inherited: str) -> None:
+    def _fill(self, body: Body, element: Element, inherited: str) -> None:
         """The sites, the joint and the children of a body."""
-        inherited = own.get("childclass", inherited)
-        for child in own.children:
+        inherited = element.get("childclass", inherited)
+        for child in element.children:
             place = f"line {child.line}"
             if child.tag == "site" and child.get("fromto"):
                 self.source.leave_out(place, "site with fromto")
@@ -145,49 +145,49 @@ class _World:
             else:
                 self.source.leave_out(place, f"element <{child.tag[:20]}>")
 
-    def _add_body(self, parent: Body, own: Element, inherited: str) -> None:
-        name = own.get("name") or f"body{len(self.bodies)}"
+    def _add_body(self, parent: Body, element: Element, inherited: str) -> None:
+        name = element.get("name") or f"body{len(self.bodies)}"
         if any(name == other.name for other in self.bodies):
-            self.source.refuse(f'two bodies are called "{name[:40]}"', own.line)
+            self.source.refuse(f'two bodies are called "{name[:40]}"', element.line)
         if len(self.bodies) > 400:
-            self.source.refuse("has more than 400 bodies", own.line)
-        pose = parent.pose.frame(self._numbers(own, "pos", 3, "0 0 0"), self._turn(own))
-        body = Body(name=name, parent=parent.name, pose=pose, line=own.line)
+            self.source.refuse("has more than 400 bodies", element.line)
+        pose = parent.pose.frame(self._numbers(element, "pos", 3, "0 0 0"), self._turn(element))
+        body = Body(name=name, parent=parent.name, pose=pose, line=element.line)
         self.bodies.append(body)
-        self._fill(body, own, inherited)
+        self._fill(body, element, inherited)
         if body.joint is None:
             # a rigid child is a point of its parent
             body.sites.setdefault(name, pose.at)
 
-    def _add_joint(self, body: Body, own: Element, inherited: str) -> None:
+    def _add_joint(self, body: Body, element: Element, inherited: str) -> None:
         # a class of the joint itself comes before that of its body
-        defaults = self.defaults.get(own.get("class", inherited), self.defaults[""])
-        own = Element(own.tag, {**defaults, **own.attributes}, own.line)
-        name = own.get("name") or f"joint{len(self.joints) + 1}"
-        kind = "free" if own.tag == "freejoint" else own.get("type", "hinge")
+        defaults = self.defaults.get(element.get("class", inherited), self.defaults[""])
+        element = Element(element.tag, {**defaults, **element.attributes}, element.line)
+        name = element.get("name") or f"joint{len(self.joints) + 1}"
+        kind = "free" if element.tag == "freejoint" else element.get("type", "hinge")
         if kind not in ("hinge", "slide") or body.name == GROUND:
-            self.source.refuse(f"a joint of type {kind[:20]} is not planar", own.line)
+            self.source.refuse(f"a joint of type {kind[:20]} is not planar", element.line)
         if body.joint is not None:
             self.source.refuse(
-                f'body "{body.name[:40]}" has two joints: only one is read', own.line
+                f'body "{body.name[:40]}" has two joints: only one is read', element.line
             )
         if name in self.joints:
-            self.source.refuse(f'two joints are called "{name[:40]}"', own.line)
-        axis = body.pose.turn @ np.array(self._numbers(own, "axis", 3, "0 0 1"))
-        at = body.pose.place(self._numbers(own, "pos", 3, "0 0 0"))
+            self.source.refuse(f'two joints are called "{name[:40]}"', element.line)
+        axis = body.pose.turn @ np.array(self._numbers(element, "axis", 3, "0 0 1"))
+        at = body.pose.place(self._numbers(element, "pos", 3, "0 0 0"))
         body.joint = BodyJoint(name=name, kind=kind, at=at, axis=axis)
         self.joints[name] = body.name
         for key, what in _FORCES.items():
-            if own.get(key):
-                self.source.leave_out(f"line {own.line}", f"{what} of a joint")
+            if element.get(key):
+                self.source.leave_out(f"line {element.line}", f"{what} of a joint")
 
     def planar(self) -> Planar:
         """The links, with loops and inputs; closures that no position meets are left out."""
         kept = list(self._equalities())
         while True:
-            # what is noted in a trial is noted again
+            # notes of a trial are repeated in the final run
             planar = self._joined(kept, Source(self.source.data, self.source.name))
-            closing = [own for own in kept if own.tag in ("weld", "connect")]
+            closing = [element for element in kept if element.tag in ("weld", "connect")]
             if not (closing and planar.contradictory()):
                 break
             what = f"<{closing[-1].tag}> that contradicts the lengths of the links"
@@ -199,29 +199,29 @@ class _World:
         return planar
 
     def _joined(self, equalities: list[Element], source: Source) -> Planar:
-        welds = [self._weld(own) for own in equalities if own.tag == "weld"]
+        welds = [self._weld(element) for element in equalities if element.tag == "weld"]
         # welds first: they decide which bodies are links
         planar = Planar(source, self.root.get("model"), self.bodies, welds)
-        for own in equalities:
-            if own.tag == "connect":
-                self._connect(planar, own)
-            elif own.tag != "weld":
-                source.leave_out(f"line {own.line}", f"coupling of joints <{own.tag[:20]}>")
+        for element in equalities:
+            if element.tag == "connect":
+                self._connect(planar, element)
+            elif element.tag != "weld":
+                source.leave_out(f"line {element.line}", f"coupling of joints <{element.tag[:20]}>")
         planar.add_sites()
         return planar
 
     def _equalities(self) -> Iterator[Element]:
         """The active ones; a file may have several sections."""
-        for own in (own for each in self.root.all("equality") for own in each.children):
-            if own.get("active") == "false":
-                self.source.leave_out(f"line {own.line}", f"inactive <{own.tag[:20]}>")
+        for element in (element for each in self.root.all("equality") for element in each.children):
+            if element.get("active") == "false":
+                self.source.leave_out(f"line {element.line}", f"inactive <{element.tag[:20]}>")
             else:
-                yield own
+                yield element
 
-    def _weld(self, own: Element) -> Weld:
+    def _weld(self, element: Element) -> Weld:
         """The bodies of a weld, and the pose of the second."""
-        if own.get("site1"):
-            (one, _), (two, _) = sites = self._two_sites(own)
+        if element.get("site1"):
+            (one, _), (two, _) = sites = self._two_sites(element)
             first, second = (
                 Pose(np.eye(3), np.zeros(3)).frame(
                     self._numbers(e, "pos", 3, "0 0 0"), self._turn(e)
@@ -231,49 +231,49 @@ class _World:
             turn = one.pose.turn @ first.turn @ second.turn.T
             pose = Pose(turn, one.pose.place(first.at) - turn @ second.at)
         else:
-            one, two = self._two_bodies(own)
-            *at, w, x, y, z = self._numbers(own, "relpose", 7, "0 1 0 0 0 0 0")
+            one, two = self._two_bodies(element)
+            *at, w, x, y, z = self._numbers(element, "relpose", 7, "0 1 0 0 0 0 0")
             # without a quaternion they stay as drawn
             pose = one.pose.frame(at, quaternion(w, x, y, z)) if any((w, x, y, z)) else two.pose
-        return Weld(one=one.name, two=two.name, pose=pose, line=own.line)
+        return Weld(one=one.name, two=two.name, pose=pose, line=element.line)
 
-    def _two_sites(self, own: Element) -> list[tuple[Body, Element]]:
-        ends = [self.sites[n] for k in ("site1", "site2") if (n := own.get(k)) in self.sites]
+    def _two_sites(self, element: Element) -> list[tuple[Body, Element]]:
+        ends = [self.sites[n] for k in ("site1", "site2") if (n := element.get(k)) in self.sites]
         if len(ends) < 2:
-            self.source.refuse(f"{own.tag} refers to a site that does not exist", own.line)
+            self.source.refuse(f"{element.tag} refers to a site that does not exist", element.line)
         return ends
 
-    def _two_bodies(self, own: Element) -> list[Body]:
+    def _two_bodies(self, element: Element) -> list[Body]:
         known = {body.name: body for body in self.bodies}
-        names = own.get("body1"), own.get("body2") or GROUND
+        names = element.get("body1"), element.get("body2") or GROUND
         if not set(names) <= set(known):
-            self.source.refuse(f"{own.tag} needs body1 and body2, or two sites", own.line)
+            self.source.refuse(f"{element.tag} needs body1 and body2, or two sites", element.line)
         return [known[name] for name in names]
 
-    def _connect(self, planar: Planar, own: Element) -> None:
-        if own.get("site1"):
-            names = own.get("site1"), own.get("site2")
+    def _connect(self, planar: Planar, element: Element) -> None:
+        if element.get("site1"):
+            names = element.get("site1"), element.get("site2")
             ends = [
                 (body.name, body.sites[name])
-                for name, (body, _) in zip(names, self._two_sites(own), strict=True)
+                for name, (body, _) in zip(names, self._two_sites(element), strict=True)
             ]
         else:
-            one, two = self._two_bodies(own)
-            at = one.pose.place(self._numbers(own, "anchor", 3, "0 0 0"))
+            one, two = self._two_bodies(element)
+            at = one.pose.place(self._numbers(element, "anchor", 3, "0 0 0"))
             ends = [(one.name, at), (two.name, at)]
         if planar.link(ends[0][0]) == planar.link(ends[1][0]):
-            planar.source.leave_out(f"line {own.line}", "connect inside one link")
+            planar.source.leave_out(f"line {element.line}", "connect inside one link")
         else:
-            planar.pin(own.get("name") or f"{ends[0][0]}_{ends[1][0]}", *ends)
+            planar.pin(element.get("name") or f"{ends[0][0]}_{ends[1][0]}", *ends)
 
     def _drive(self, planar: Planar) -> None:
-        for own in (own for each in self.root.all("actuator") for own in each.children):
-            body = self.joints.get(own.get("joint"))
+        for element in (element for each in self.root.all("actuator") for element in each.children):
+            body = self.joints.get(element.get("joint"))
             joint = next((b.joint for b in self.bodies if b.name == body), None)
             if body is None or joint is None:
-                self.source.leave_out(f"line {own.line}", "actuator that drives no joint")
+                self.source.leave_out(f"line {element.line}", "actuator that drives no joint")
             elif joint.kind == "slide":
-                self.source.leave_out(f"line {own.line}", "the input: a slide without a range")
+                self.source.leave_out(f"line {element.line}", "the input: a slide without a range")
             else:
                 link, on = planar.link(body), planar.link(planar.bodies[body].parent)
                 # a body welded to the world drives the other side

@@ -58,7 +58,7 @@ def read_code(source: Source, code: str) -> Assembly:
     sections = body[:-1].split(".")
     reader = _Code(source, sections[4:])
     joints = list(map(reader.joint, reader.section("joints")))
-    links = [own for own in map(reader.link, reader.section("links")) if own is not None]
+    links = [link for link in map(reader.link, reader.section("links")) if link is not None]
     for force in reader.section("forces"):
         source.leave_out(f"force {force[1:].partition(',')[0][:40]}", "force")
     if len(reader.left) > 1:
@@ -81,12 +81,12 @@ class _Code:
         # the oldest links end with their forces
         if "" not in self.left:
             if what == "forces":
-                own, self.left = self.left, []
-                return own
+                section, self.left = self.left, []
+                return section
             self.source.refuse(f"the link ends before its {what}")
         end = self.left.index("")
-        own, self.left = self.left[:end], self.left[end + 1 :]
-        return own
+        section, self.left = self.left[:end], self.left[end + 1 :]
+        return section
 
     def number(self, digits: str, what: str) -> int:
         """A whole number."""
@@ -118,8 +118,8 @@ class _Code:
         words = record.split(",")
         if len(words) < 8 or len(words[0]) < 3:
             self.source.refuse(f'link "{record[:40]}" needs a name, masses and joints')
-        own = words[7:]
-        joints = tuple(own[: own.index("")] if "" in own else own)
+        entries = words[7:]
+        joints = tuple(entries[: entries.index("")] if "" in entries else entries)
         name = words[1]
         if any(self.number(word, f"a mass of link {name[:40]}") for word in words[2:4]):
             self.source.leave_out(f"link {name[:40]}", "mass: the link does not state its unit")
@@ -137,10 +137,10 @@ def _pmks_code_assembled(
     known = {joint.id: joint for joint in joints}
     carried: dict[str, list[_Link]] = {}
     for link in links:
-        for own_id in link.joints:
-            if own_id not in known:
-                source.refuse(f'link "{link.name[:40]}" has an unknown joint "{own_id[:40]}"')
-            carried.setdefault(own_id, []).append(link)
+        for joint_id in link.joints:
+            if joint_id not in known:
+                source.refuse(f'link "{link.name[:40]}" has an unknown joint "{joint_id[:40]}"')
+            carried.setdefault(joint_id, []).append(link)
     # a block joins a slide to the pin at the same place
     # in older links a block joins a slide to its pin
     blocks = {link.id for link in links if any(known[j].flags & _SLIDES for j in link.joints)}
@@ -149,17 +149,17 @@ def _pmks_code_assembled(
     points: dict[str, str] = {}
     driven: list[tuple[str, list[str]]] = []
     for joint in joints:
-        own = [names[link.id] for link in carried.get(joint.id, ()) if link.id in names]
-        if joint.flags & _SLIDES and not own:
+        joined = [names[link.id] for link in carried.get(joint.id, ()) if link.id in names]
+        if joint.flags & _SLIDES and not joined:
             continue
         fixed = bool(joint.flags & _FIXED) and not joint.flags & _SLIDES
         points[joint.id] = assembly.add_point(joint.name, joint.at, fixed)
-        for name in own:
+        for name in joined:
             assembly.put_on(name, points[joint.id])
         if joint.flags & _DRIVEN and not joint.flags & _SLIDES:
-            pinned = [GROUND, *own] if fixed else own
+            pinned = [GROUND, *joined] if fixed else joined
             driven.append((f"joint {joint.name[:40]}", pinned))
-        if joint.flags & _WELDED and not joint.flags & _SLIDES and len(own) > 1:
+        if joint.flags & _WELDED and not joint.flags & _SLIDES and len(joined) > 1:
             source.leave_out(f"joint {joint.name[:40]}", "weld: its links turn against each other")
     for joint in joints:
         if joint.flags & _SLIDES:
@@ -177,7 +177,7 @@ def _add_slide(
     names: dict[str, str],
     points: dict[str, str],
 ) -> None:
-    """A slide on ground or in the slot of a link: of its own point, or of its block's pin."""
+    """A slide on ground or in the slot of a link: of a point, or of the pin of its block."""
     source, place = assembly.source, f"joint {joint.name[:40]}"
     pin = joint
     for link in carried.get(joint.id, ()):
@@ -197,13 +197,13 @@ def _add_slide(
     if point in assembly.carries(on):
         source.leave_out(place, "slide of a point that is fixed on the link with the slot")
         return
-    own = [link for link in assembly.carriers(point) if link != GROUND]
+    links = [link for link in assembly.carriers(point) if link != GROUND]
     if line is None:
         along = complex(math.cos(joint.angle), math.sin(joint.angle))
         line = assembly.guide(on, point, along)
     # a weld between block and pin: the link does not turn
-    if pin.flags & _WELDED and pin is not joint and len(own) == 1:
-        assembly.add_slider(f"s_{point}", own[0], point, on, line)
+    if pin.flags & _WELDED and pin is not joint and len(links) == 1:
+        assembly.add_slider(f"s_{point}", links[0], point, on, line)
     else:
         assembly.add_slot(f"s_{point}", point, on, line)
     if pin is joint:
@@ -251,25 +251,26 @@ def code_of(drawn: Drawn) -> str:
             )
         x, y = _decimal(row.at.real), _decimal(row.at.imag)
         if row.kind != "P":
-            own = ids[row.name] = str(len(ids) + 1)
+            number = ids[row.name] = str(len(ids) + 1)
             fixed = GROUND in row.links and row.kind == "R"
             # the slide, not its pin, is on ground
             flags = _FIXED * fixed + _DRIVEN * (row.name in driven)
-            joints.append((flags, own, _plain(row.name), x, y, "0"))
+            joints.append((flags, number, _allowed_name(row.name), x, y, "0"))
         if row.kind != "R":
             pin = ids[row.name]
             blocks.append((f"S{pin}", pin))
             joints.append((_SLIDES + _FIXED, f"S{pin}", f"S{pin}", x, y, _decimal(row.angle)))
             if row.kind == "P" and _is_alone(drawn, row):
                 joints = [
-                    (flags | _WELDED * (own == pin), own, *rest) for flags, own, *rest in joints
+                    (flags | _WELDED * (number == pin), number, *rest)
+                    for flags, number, *rest in joints
                 ]
     links = {n: points for n, points in drawn.linkage.links.items() if n != GROUND}
     parts = [
         "".join(f"{_DIGITS[flags]}{','.join(rest)}." for flags, *rest in joints),
         "".join(
-            f"YR{k},{_plain(name)},0,0,0,0,c5cae9,{','.join(ids[p] for p in own)},,."
-            for k, (name, own) in enumerate(links.items(), 1)
+            f"YR{k},{_allowed_name(name)},0,0,0,0,c5cae9,{','.join(ids[p] for p in members)},,."
+            for k, (name, members) in enumerate(links.items(), 1)
         ),
         "".join(f"YPB{slide},B{slide},0,0,0,0,c5cae9,{pin},{slide},,." for slide, pin in blocks),
     ]
@@ -300,7 +301,7 @@ def _is_alone(drawn: Drawn, row: JointRow) -> bool:
     return False
 
 
-def _plain(name: str) -> str:
+def _allowed_name(name: str) -> str:
     return re.sub(r"[^\w-]", "_", name, flags=re.ASCII)
 
 
@@ -392,8 +393,8 @@ def _joint_lines(source: Source, text: str) -> Assembly:
             (k for k, row in enumerate(rows) if {GROUND, "input"} == set(row.links)), None
         )
         if driven is not None:
-            own = rows[driven]
-            rows[driven] = JointRow(**{**vars(own), "input": True})
+            driven_row = rows[driven]
+            rows[driven] = JointRow(**{**vars(driven_row), "input": True})
     return _pmks_assembled(source, rows)
 
 

@@ -48,10 +48,10 @@ def read(source: Source) -> Assembly:
 def _data(source: Source) -> dict[str, Any]:
     def pairs(entries: list[tuple[str, Any]]) -> dict[str, Any]:
         # the last of two equal keys would win unseen
-        found = dict(entries)
-        if len(found) < len(entries):
+        table = dict(entries)
+        if len(table) < len(entries):
             source.refuse("gives a key twice in one object")
-        return found
+        return table
 
     def constant(word: str) -> NoReturn:
         source.refuse(f"contains {word}: numbers must be finite")
@@ -99,12 +99,12 @@ class _Reading:
         return self.points[name]
 
     def size(self, entry: dict[str, Any], key: str, k: int) -> float | None:
-        given = entry.get(key)
-        return None if given is None else self.source.number(given, f"{key} of joints[{k}]")
+        value = entry.get(key)
+        return None if value is None else self.source.number(value, f"{key} of joints[{k}]")
 
 
 class _Parents(_Reading):
-    """Joints that name the joints from which they are found: Static, Crank, Revolute, Fixed, …"""
+    """Joints that name the joints from which they are solved: Static, Crank, Revolute, Fixed, …"""
 
     def add(self) -> None:
         """Add all joints: points first, since they may refer to later ones."""
@@ -117,29 +117,29 @@ class _Parents(_Reading):
             _PARENTS[entry["type"]](self, entry, k, self.points[entry["name"]])
 
     def parent(self, entry: dict[str, Any], key: str, k: int) -> str:
-        """The point of a parent: by name, or a fixed place of its own."""
-        given = entry.get(key)
-        if not isinstance(given, dict):
+        """The point of a parent: by name, or at a fixed place."""
+        parent = entry.get(key)
+        if not isinstance(parent, dict):
             self.refuse("joints", k, f"needs {key}")
-        if given.get("inline"):
-            name = given.get("name")
+        if parent.get("inline"):
+            name = parent.get("name")
             place = f"a coordinate of joints[{k}].{key}"
-            at = complex(*(self.source.number(given.get(c), place) for c in "xy"))
-            wanted = name if isinstance(name, str) else f"O{k}"
+            at = complex(*(self.source.number(parent.get(c), place) for c in "xy"))
+            preferred = name if isinstance(name, str) else f"O{k}"
             # inline joints are written again wherever they are used
-            same = self.points.get(wanted)
+            same = self.points.get(preferred)
             if same in self.assembly.fixed and self.assembly.points[str(same)] == at:
                 return str(same)
-            point = self.assembly.add_point(wanted, at, fixed=True)
-            self.points.setdefault(wanted, point)
+            point = self.assembly.add_point(preferred, at, fixed=True)
+            self.points.setdefault(preferred, point)
             return point
-        ref = given.get("ref")
+        ref = parent.get("ref")
         if not isinstance(ref, str) or ref not in self.points:
             self.refuse("joints", k, f"{key} refers to {str(ref)[:40]!r}, which is no joint")
         return self.points[ref]
 
     def bar(self, a: str, b: str, length: float | None) -> str:
-        """A link between two points, its length as given."""
+        """A link between two points with its stated length."""
         link = self.assembly.add_link(f"{a}_{b}", (a, b))
         if length is not None:
             self.assembly.lengths[f"{a} {b}"] = length
@@ -212,7 +212,7 @@ class _Mechanism(_Reading):
         self.links = links
 
     def add(self) -> None:
-        """Add points, links, the driver, and what slides or follows."""
+        """Add points, links, the driver, then slides and followers."""
         for k, entry in enumerate(self.joints):
             name, at = self.named(entry, "id", "joints", k), entry.get("position")
             if not isinstance(at, list) or len(at) != 2:
@@ -231,36 +231,38 @@ class _Mechanism(_Reading):
                 self.source.leave_out(f"joints[{k}]", "unknown type, read as a pin")
 
     def _add_link(self, entry: dict[str, Any], k: int) -> None:
-        name, own = self.named(entry, "id", "links", k), entry.get("joints")
-        known = isinstance(own, list) and all(isinstance(j, str) and j in self.points for j in own)
-        if not isinstance(own, list) or not known:
+        name, ends = self.named(entry, "id", "links", k), entry.get("joints")
+        known = isinstance(ends, list) and all(
+            isinstance(j, str) and j in self.points for j in ends
+        )
+        if not isinstance(ends, list) or not known:
             self.refuse("links", k, "needs joints, a list of ids of joints")
-        points = [self.points[joint] for joint in own]
+        points = [self.points[joint] for joint in ends]
         kind = entry.get("type", "link")
         if kind == "ground":
             self.assembly.fixed.update(points)
             return
         motor = entry.get("motor_joint")
-        if motor in own:  # the angle of a link counts from its first point
+        if motor in ends:  # the angle of a link counts from its first point
             first = self.points[str(motor)]
             points.sort(key=lambda point: point != first)
         link = self.assembly.add_link(name, points)
         if kind in ("driver", "arc_driver"):
-            self._drive(entry, k, link, own)
+            self._drive(entry, k, link, ends)
         elif kind != "link":
             self.source.leave_out(f"links[{k}]", "unknown type, read as a link")
 
-    def _drive(self, entry: dict[str, Any], k: int, link: str, own: list[str]) -> None:
+    def _drive(self, entry: dict[str, Any], k: int, link: str, joints: list[str]) -> None:
         motor = entry.get("motor_joint")
-        if motor not in own or self.points[motor] not in self.assembly.fixed:
+        if motor not in joints or self.points[motor] not in self.assembly.fixed:
             self.source.leave_out(f"links[{k}]", "driver without a motor at a fixed joint")
             return
         if entry.get("angular_velocity") is not None:
             self.source.leave_out(f"links[{k}]", _STEP)
         ends: tuple[float | None, float | None] = (None, None)
         if entry.get("type") == "arc_driver":
-            given = (self.size(entry, key, k) for key in ("arc_start", "arc_end"))
-            ends = tuple(None if end is None else math.degrees(end) for end in given)  # type: ignore[assignment]  # two
+            angles = (self.size(entry, key, k) for key in ("arc_start", "arc_end"))
+            ends = tuple(None if end is None else math.degrees(end) for end in angles)  # type: ignore[assignment]  # two
         self.assembly.inputs.append(Input(link=link, start=ends[0], stop=ends[1]))
 
     def _slide(self, entry: dict[str, Any], k: int, point: str) -> None:
@@ -304,25 +306,25 @@ def write(drawn: Drawn) -> str:
     driven = drawn.driven_pins()
     joints: list[dict[str, Any]] = []
     for row in drawn.joints():
-        own: dict[str, Any] = {"id": row.name, "position": [row.at.real, row.at.imag]}
+        joint: dict[str, Any] = {"id": row.name, "position": [row.at.real, row.at.imag]}
         if row.kind == "R":
-            own["type"] = "ground" if GROUND in row.links else "revolute"
+            joint["type"] = "ground" if GROUND in row.links else "revolute"
         elif row.kind == "RP" and row.links[0] == GROUND:
-            own |= {"type": "prismatic", "axis": [math.cos(row.angle), math.sin(row.angle)]}
+            joint |= {"type": "prismatic", "axis": [math.cos(row.angle), math.sin(row.angle)]}
         else:
             raise InputError(
                 f'"{row.place}" has no equivalent in pylinkage: it slides on a moving link or '
                 "without turning"
             )
-        joints.append(own)
+        joints.append(joint)
     tables = []
-    for name, own_joints in drawn.linkage.links.items():
-        table: dict[str, Any] = {"id": name, "type": "link", "joints": list(own_joints)}
+    for name, joints_of_link in drawn.linkage.links.items():
+        table: dict[str, Any] = {"id": name, "type": "link", "joints": list(joints_of_link)}
         motor = next(
             (
                 p
                 for p, w in driven.items()
-                if w.link == name or (w.link is None and p in own_joints)
+                if w.link == name or (w.link is None and p in joints_of_link)
             ),
             None,
         )

@@ -41,16 +41,16 @@ class _Parser:
         return self.text.count("\n", 0, self.at) + 1
 
     def _next(self) -> str:
-        found = _TOKEN.match(self.text, self.at)
-        self.at = found.end() if found else len(self.text)
-        return found[1] if found else ""
+        match = _TOKEN.match(self.text, self.at)
+        self.at = match.end() if match else len(self.text)
+        return match[1] if match else ""
 
-    def take(self, wanted: str = "") -> str:
-        """The next word, which must be the wanted one."""
+    def take(self, expected: str = "") -> str:
+        """The next word, which must be ``expected``."""
         word = self.word
-        if (wanted and word != wanted) or not word:
+        if (expected and word != expected) or not word:
             got = f'"{word[:40]}"' if word else "the end"
-            self.source.refuse(f'expected "{wanted or "a word"}", got {got}', self.line)
+            self.source.refuse(f'expected "{expected or "a word"}", got {got}', self.line)
         self.word = self._next()
         return word
 
@@ -79,7 +79,7 @@ class _Parser:
             self.take(",")
             name = self.take()
             if name in fields:
-                self.source.refuse(f'"{name[:40]}" is given twice', self.line)
+                self.source.refuse(f'"{name[:40]}" occurs twice', self.line)
             fields[name] = self.words()
         self.take("]")
         at = fields.get("P", [])

@@ -65,8 +65,8 @@ def xml_tree(data: bytes, source: Source, *roots: str) -> Element:
         source.refuse("is in an encoding that is not read: save it as UTF-8", 1)
     root = builder.top.children[0]
     if root.tag not in roots:
-        wanted = " or ".join(f"<{tag}>" for tag in roots)
-        source.refuse(f"begins with <{root.tag[:40]}>, expected {wanted}", root.line)
+        expected = " or ".join(f"<{tag}>" for tag in roots)
+        source.refuse(f"begins with <{root.tag[:40]}>, expected {expected}", root.line)
     return root
 
 
@@ -91,9 +91,9 @@ class _Builder:
             self._refuse(f"has elements nested deeper than {_DEEPEST} levels")
         if self.count > _MOST:
             self._refuse(f"has more than {_MOST} elements")
-        own = Element(tag, attributes, self.parser.CurrentLineNumber)
-        self.open[-1].children.append(own)
-        self.open.append(own)
+        element = Element(tag, attributes, self.parser.CurrentLineNumber)
+        self.open[-1].children.append(element)
+        self.open.append(element)
 
     def end(self, _: str) -> None:
         self.open.pop()
@@ -201,7 +201,7 @@ class Planar:
         self.links: dict[str, str] = {}
         self.points: dict[str, str] = {}
         self._slides: list[tuple[str, str, complex, bool]] = []
-        places = [self.at(place) for body in bodies for place in self._places(body)]
+        places = [self.at(place) for body in bodies for place in self._points_of(body)]
         self.size = max((abs(p - places[0]) for p in places), default=0.0) or 1.0
         for weld in welds:
             self._weld(weld)
@@ -213,7 +213,7 @@ class Planar:
             if body.joint is not None:
                 self._join(body, body.joint)
 
-    def _places(self, body: Body) -> Iterable[Array]:
+    def _points_of(self, body: Body) -> Iterable[Array]:
         return [*body.sites.values(), *([body.joint.at] if body.joint else [body.pose.at])]
 
     def _weld(self, weld: Weld) -> None:
@@ -234,15 +234,15 @@ class Planar:
         if kept != lost:
             self._same[lost] = kept, move
         elif move != (1.0, 0.0):
-            self.source.leave_out(f"line {weld.line}", "weld that contradicts others")
+            self.source.leave_out(f"line {weld.line}", "weld that contradicts other welds")
 
     def _placed(self, body: str) -> tuple[str, _Move]:
         """The body that this one is fixed on, and its movement from where it is drawn to there."""
         move: _Move = (1.0 + 0j, 0j)
         while body != GROUND:
             if body in self._same:
-                body, own = self._same[body]
-                move = _after(own, move)
+                body, moved = self._same[body]
+                move = _after(moved, move)
             elif self.bodies[body].joint is None:
                 body = self.bodies[body].parent
             else:
@@ -291,8 +291,8 @@ class Planar:
 
     def _join(self, body: Body, joint: BodyJoint) -> None:
         # a weld elsewhere may have joined both sides
-        own, on = self.link(body.name), self.link(body.parent)
-        if own == on:
+        link, on = self.link(body.name), self.link(body.parent)
+        if link == on:
             self.source.leave_out(f"line {body.line}", f'joint "{joint.name[:40]}" inside one link')
             return
         if joint.kind == "hinge":
@@ -306,14 +306,14 @@ class Planar:
         at = self.spot(body.parent, joint.at)
         line = self.assembly.guide(on, point, turns[0] * along, at)
         self.spots[on].update({end: self.assembly.points[end] for end in line})
-        slide = self.assembly.add_slider(joint.name.partition(":")[0], own, point, on, line)
+        slide = self.assembly.add_slider(joint.name.partition(":")[0], link, point, on, line)
         self.points[joint.name] = slide
-        self._slides.append((slide, own, turns[1] * along, turns != [1.0, 1.0]))
+        self._slides.append((slide, link, turns[1] * along, turns != [1.0, 1.0]))
 
     def pin(self, name: str, *ends: tuple[str, Array]) -> str:
         """A point at places of bodies: one that is there, or a new one, called like a site."""
         # the place of a point on ground is exact
-        own = sorted(
+        pinned = sorted(
             ((self.link(body), self.spot(body, at), body) for body, at in ends),
             key=lambda end: end[0] != GROUND,
         )
@@ -321,21 +321,21 @@ class Planar:
         # two pins at one place are one pin of three links
         known = [
             p
-            for link, at, _ in own
+            for link, at, _ in pinned
             for p, q in sorted(self.spots[link].items())
             if abs(q - at) <= near
         ]
         known.sort(key=lambda point: point not in self.assembly.fixed)
         if not known:
-            sites = ((s, b, at, p) for _, at, b in own for s, p in self.bodies[b].sites.items())
-            wanted = next((s for s, b, at, p in sites if abs(self.spot(b, p) - at) <= near), name)
-            spots = [at for _, at, _ in own]
+            sites = ((s, b, at, p) for _, at, b in pinned for s, p in self.bodies[b].sites.items())
+            site = next((s for s, b, at, p in sites if abs(self.spot(b, p) - at) <= near), name)
+            spots = [at for _, at, _ in pinned]
             # between the places of two links that do not meet: neither is more right
-            middle = spots[0] if own[0][0] == GROUND else sum(spots) / len(spots)
+            middle = spots[0] if pinned[0][0] == GROUND else sum(spots) / len(spots)
             at = spots[0] if max(abs(p - spots[0]) for p in spots) <= near else middle
-            known.append(self.assembly.add_point(wanted.rpartition("/")[2].partition(":")[0], at))
+            known.append(self.assembly.add_point(site.rpartition("/")[2].partition(":")[0], at))
         point = known[0]
-        for link, at, _ in own:
+        for link, at, _ in pinned:
             self.assembly.put_on(link, point)
             self.spots[link].setdefault(point, at)
         place = self.spots[GROUND].get(point, self.assembly.points[point])
@@ -351,11 +351,11 @@ class Planar:
 
     def contradictory(self) -> bool:
         """Whether two links, or ground and a link, share two points at different distances."""
-        found: dict[frozenset[str], float] = {}
+        distances: dict[frozenset[str], float] = {}
         for spots in self.spots.values():
             for a, b in combinations(spots, 2):
                 distance = abs(spots[a] - spots[b])
-                known = found.setdefault(frozenset((a, b)), distance)
+                known = distances.setdefault(frozenset((a, b)), distance)
                 if abs(known - distance) > _NEAR * self.size:
                     return True
         return False
@@ -384,8 +384,8 @@ class Planar:
                     self.assembly.angles[f"{rest[0]} {first} {point}"] = angle
             angles = {
                 slide: math.degrees(phase(base / along))
-                for slide, own, along, turned in self._slides
-                if own == link and (moved or turned)
+                for slide, sliding, along, turned in self._slides
+                if sliding == link and (moved or turned)
             }
             self.assembly.parts["sliders"] = [
                 replace(part, angle=angles.get(part.name))
@@ -393,7 +393,7 @@ class Planar:
             ]
 
     def _follow(self, link: str, spots: dict[str, complex]) -> None:
-        """Draw the points that no other link has where the others of the link take them."""
+        """Move the points that belong to this link alone along with its other points."""
         drawn = self.assembly.points
         shared = [p for p in spots if len(self.assembly.carriers(p)) > 1]
         # a link that meets no other is drawn as it is

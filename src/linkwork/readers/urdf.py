@@ -40,16 +40,16 @@ def read(source: Source) -> Assembly:
 class _Tree:
     def __init__(self, source: Source, root: Element) -> None:
         self.source = source
-        self.links = {own.get("name"): own for own in root.all("link")}
+        self.links = {element.get("name"): element for element in root.all("link")}
         if len(self.links) < len(list(root.all("link"))) or "" in self.links:
             source.refuse("two links have the same name, or one has none", root.line)
         self.joints = list(root.all("joint"))
-        names = [own.get("name") for own in self.joints]
+        names = [element.get("name") for element in self.joints]
         if len(set(names)) < len(names):
             source.refuse("two joints have the same name", root.line)
-        for own in root.children:
-            if own.tag not in ("link", "joint"):
-                source.leave_out(f"line {own.line}", f"element <{own.tag[:20]}>")
+        for element in root.children:
+            if element.tag not in ("link", "joint"):
+                source.leave_out(f"line {element.line}", f"element <{element.tag[:20]}>")
         self.bodies: list[Body] = []
         self._grow()
         for name in self.links:
@@ -60,14 +60,14 @@ class _Tree:
         """Bodies from the root on; the root is ground."""
         below: dict[str, list[Element]] = {}
         carried = set()
-        for own in self.joints:
-            ends = [own.one(tag) for tag in ("parent", "child")]
+        for joint in self.joints:
+            ends = [joint.one(tag) for tag in ("parent", "child")]
             parent, child = ("" if end is None else end.get("link") for end in ends)
             if parent not in self.links or child not in self.links or child in carried:
                 self.source.refuse(
-                    "needs a parent and a child that no other joint carries", own.line
+                    "needs a parent and a child that no other joint carries", joint.line
                 )
-            below.setdefault(parent, []).append(own)
+            below.setdefault(parent, []).append(joint)
             carried.add(child)
         # the specification allows one root
         roots = [name for name in self.links if name not in carried]
@@ -83,25 +83,25 @@ class _Tree:
         reached = [roots[0]]
         for parent in reached:  # grows meanwhile
             frame = next(b.pose for b in self.bodies if b.name == self.names[parent])
-            reached += [self._add_child(own, parent, frame) for own in below.get(parent, [])]
+            reached += [self._add_child(joint, parent, frame) for joint in below.get(parent, [])]
 
-    def _add_child(self, own: Element, parent: str, frame: Pose) -> str:
-        child = own.one("child")
+    def _add_child(self, node: Element, parent: str, frame: Pose) -> str:
+        child = node.one("child")
         assert child is not None  # checked
         name = child.get("link")
         self.names[name] = name if name != GROUND else f"{GROUND}_link"
-        at, turn = self._origin(own)
+        at, turn = self._origin(node)
         pose = frame.frame(at, turn)
-        body = Body(name=self.names[name], parent=self.names[parent], pose=pose, line=own.line)
-        kind = own.get("type")
+        body = Body(name=self.names[name], parent=self.names[parent], pose=pose, line=node.line)
+        kind = node.get("type")
         if kind in _KINDS:
-            axis = own.one("axis")
+            axis = node.one("axis")
             # the default of the specification
-            given = "1 0 0" if axis is None else axis.get("xyz", "1 0 0")
-            along = pose.turn @ np.array(self.source.numbers(given, 3, "axis", own.line))
-            body.joint = BodyJoint(name=own.get("name"), kind=_KINDS[kind], at=pose.at, axis=along)
+            axis_text = "1 0 0" if axis is None else axis.get("xyz", "1 0 0")
+            along = pose.turn @ np.array(self.source.numbers(axis_text, 3, "axis", node.line))
+            body.joint = BodyJoint(name=node.get("name"), kind=_KINDS[kind], at=pose.at, axis=along)
         elif kind != "fixed":
-            self.source.refuse(f'a joint of type "{kind[:20]}" is not read', own.line)
+            self.source.refuse(f'a joint of type "{kind[:20]}" is not read', node.line)
         else:
             # a rigid child is a point of its parent
             body.sites[name] = pose.at
@@ -115,8 +115,8 @@ class _Tree:
             self.source.leave_out(f"line {inner.line}", what)
         return name
 
-    def _origin(self, own: Element) -> tuple[list[float], Array]:
-        origin = own.one("origin")
+    def _origin(self, element: Element) -> tuple[list[float], Array]:
+        origin = element.one("origin")
         if origin is None:
             return [0.0, 0.0, 0.0], np.eye(3)
         at = self.source.numbers(origin.get("xyz", "0 0 0"), 3, "xyz", origin.line)
@@ -128,24 +128,24 @@ class _Tree:
 
     def drive(self, planar: Planar) -> None:
         """Drive every joint over its limits; mimic joints move in step."""
-        ranges = {own.get("name"): self._range(own) for own in self.joints}
-        for own in self.joints:
+        ranges = {row.get("name"): self._range(row) for row in self.joints}
+        for row in self.joints:
             body = next(
-                (b for b in self.bodies if b.joint is not None and b.joint.name == own.get("name")),
+                (b for b in self.bodies if b.joint is not None and b.joint.name == row.get("name")),
                 None,
             )
             if body is None or body.joint is None:
                 continue
-            low, high = self._moved(own.get("name"), ranges)
-            place = f"line {own.line}"
-            if own.one("coupling") is not None:
+            low, high = self._moved(row.get("name"), ranges)
+            place = f"line {row.line}"
+            if row.one("coupling") is not None:
                 self.source.leave_out(place, "polynomial of a coupling")
             self._add_input(planar, body, body.joint, low, high)
         self.source.leave_out("the file", "loops: a tree has none, every joint is driven")
 
     def _moved(self, name: str, ranges: dict[str, tuple[float, float]]) -> tuple[float, float]:
-        """The range of a joint, or what it follows from that of the joint that leads it."""
-        joints = {own.get("name"): own for own in self.joints}
+        """The range of a joint, or the range that follows from its leading joint."""
+        joints = {joint.get("name"): joint for joint in self.joints}
         lines: list[tuple[float, float]] = []
         while (mimic := joints[name].one("mimic")) is not None:
             name = mimic.get("joint")
@@ -163,9 +163,9 @@ class _Tree:
             low, high = factor * low + offset, factor * high + offset
         return low, high
 
-    def _range(self, own: Element) -> tuple[float, float]:
-        limit = own.one("limit")
-        if own.get("type") == "continuous" or limit is None:
+    def _range(self, element: Element) -> tuple[float, float]:
+        limit = element.one("limit")
+        if element.get("type") == "continuous" or limit is None:
             return 0.0, 2.0 * math.pi
         low = self.source.number(limit.get("lower", "0"), "lower", limit.line)
         return low, self.source.number(limit.get("upper", "0"), "upper", limit.line)

@@ -53,46 +53,46 @@ _MOST_DYADS = 8
 _MOST_REASONS = 5
 
 
-def synthesis_lines(found: Synthesis) -> list[str]:
+def synthesis_lines(synthesis: Synthesis) -> list[str]:
     """The page of a synthesis."""
-    lines = [*title_lines(found.task.name), *fields(_counts(found))]
-    if found.dyads and len(found.dyads) <= _MOST_DYADS:
-        lines += ["", *_dyad_lines(found)]
-    if found.delivered:
-        lines += ["", *_design_lines(found)]
-    lines += ["", *_verdict(found)]
+    lines = [*title_lines(synthesis.task.name), *fields(_counts(synthesis))]
+    if synthesis.dyads and len(synthesis.dyads) <= _MOST_DYADS:
+        lines += ["", *_dyad_lines(synthesis)]
+    if synthesis.delivered:
+        lines += ["", *_design_lines(synthesis)]
+    lines += ["", *_verdict(synthesis)]
     return lines
 
 
-def _counts(found: Synthesis) -> Iterator[tuple[str, str]]:
-    if found.starts:
-        yield "starts", str(found.starts)
-        if not (found.task.improvement and found.task.improvement.front):
-            yield "fits", f"{found.real}, different ones"
+def _counts(synthesis: Synthesis) -> Iterator[tuple[str, str]]:
+    if synthesis.starts:
+        yield "starts", str(synthesis.starts)
+        if not (synthesis.task.improvement and synthesis.task.improvement.front):
+            yield "fits", f"{synthesis.real}, different ones"
     else:
-        yield "complex", f"{found.complex} solution{'' if found.complex == 1 else 's'}"
-        yield "real", str(found.real)
-        yield "proved", str(found.proved)
-    if found.triples:
-        yield "triples", str(found.triples)
-    yield "completeness", found.message
-    if found.interrupted:
-        yield "interrupted", "the designs are the best found until then"
-    driven = len(found.designs)
-    yield "mechanisms", str(found.linkages)
+        yield "complex", f"{synthesis.complex} solution{'' if synthesis.complex == 1 else 's'}"
+        yield "real", str(synthesis.real)
+        yield "proved", str(synthesis.proved)
+    if synthesis.triples:
+        yield "triples", str(synthesis.triples)
+    yield "completeness", synthesis.message
+    if synthesis.interrupted:
+        yield "interrupted", "the designs are the best ones so far"
+    driven = len(synthesis.designs)
+    yield "mechanisms", str(synthesis.linkages)
     each = "one for each link that can be driven"
-    if found.starts:
-        each = f"driven at {found.designs[0].driven}" if found.designs else "none found"
+    if synthesis.starts:
+        each = f"driven at {synthesis.designs[0].driven}" if synthesis.designs else "none found"
     yield "designs", f"{driven}, {each}"
-    for kind, count in found.defects.items():
+    for kind, count in synthesis.defects.items():
         yield kind.value, f"{count}"
-    yield "without defects", str(found.sound)
-    yield "delivered", str(len(found.delivered))
+    yield "without defects", str(synthesis.sound)
+    yield "delivered", str(len(synthesis.delivered))
 
 
-def _dyad_lines(found: Synthesis) -> list[str]:
+def _dyad_lines(synthesis: Synthesis) -> list[str]:
     """The dyads: kind, pivots, proof."""
-    dyads, unit = found.dyads, found.task.length
+    dyads, unit = synthesis.dyads, synthesis.task.length
 
     def column(header: str, values: list[float]) -> Column:
         return Column(
@@ -111,10 +111,10 @@ def _dyad_lines(found: Synthesis) -> list[str]:
     )
 
 
-def _design_lines(found: Synthesis) -> list[str]:
+def _design_lines(synthesis: Synthesis) -> list[str]:
     """The delivered designs, best first."""
-    designs, task = found.delivered, found.task
-    front = front_of(found)
+    designs, task = synthesis.delivered, synthesis.task
+    front = front_of(synthesis)
 
     def column(header: str, values: list[float]) -> Column:
         return Column(header=header, cells=[significant(v, _DIGITS) for v in values], align="point")
@@ -125,7 +125,7 @@ def _design_lines(found: Synthesis) -> list[str]:
     ]
     if not front:
         columns.append(Column(header="mechanism", cells=[d.mechanism for d in designs]))
-        if not found.starts:  # fits are all driven at one link
+        if not synthesis.starts:  # fits are all driven at one link
             columns.append(Column(header="driven at", cells=[d.driven for d in designs]))
     least = [rounded_down(design.transmission, _DIGITS) for design in designs]
     columns += [
@@ -133,63 +133,63 @@ def _design_lines(found: Synthesis) -> list[str]:
         column(f"size [{task.length}]", [design.size for design in designs]),
     ]
     if front:
-        told = [f"goal {k}: the miss of {name}" for k, name in enumerate(front, start=1)]
-        return [*table_lines(columns), "", *(line for text in told for line in wrapped(text))]
+        legend = [f"goal {k}: the miss of {name}" for k, name in enumerate(front, start=1)]
+        return [*table_lines(columns), "", *(line for text in legend for line in wrapped(text))]
     if any(design.error for design in designs):
-        columns.append(column(_error(found), [d.error for d in designs]))
+        columns.append(column(_error(synthesis), [d.error for d in designs]))
     columns.append(column("score", [design.score for design in designs]))
-    return [*table_lines(columns), *_miss_lines(found)]
+    return [*table_lines(columns), *_miss_lines(synthesis)]
 
 
-def _miss_lines(found: Synthesis) -> list[str]:
+def _miss_lines(synthesis: Synthesis) -> list[str]:
     """How far the best design misses each goal, if there are several."""
-    misses = goal_misses(found.delivered[:1])
+    misses = goal_misses(synthesis.delivered[:1])
     if len(misses) < 2:
         return []
     rows = [(name, significant(values[0], _DIGITS)) for name, values in misses.items()]
     return ["", *wrapped("Design 1 misses its goals by"), *fields(rows)]
 
 
-def _error(found: Synthesis) -> str:
-    return f"error [{found.error_unit}]" if found.error_unit else "error"
+def _error(synthesis: Synthesis) -> str:
+    return f"error [{synthesis.error_unit}]" if synthesis.error_unit else "error"
 
 
-def _verdict(found: Synthesis) -> list[str]:
-    """Whether there is a sound design; if not, the commonest reasons and the costliest wish."""
-    if found.delivered:
-        have = "has" if found.sound == 1 else "have"
-        lines = sentence(good, f"{found.sound} of {len(found.designs)} designs {have} no defect.")
-        return [*lines, *(line for text in remarks_on(found) for line in wrapped(text))]
-    told = advice_of(found)
-    advice = wrapped(told) if told else []
-    if not found.designs:
+def _verdict(result: Synthesis) -> list[str]:
+    """Lines that say whether a design is sound; if not, the commonest defects and a change."""
+    if result.delivered:
+        have = "has" if result.sound == 1 else "have"
+        lines = sentence(good, f"{result.sound} of {len(result.designs)} designs {have} no defect.")
+        return [*lines, *(line for text in remarks_on(result) for line in wrapped(text))]
+    explanation = advice_of(result)
+    advice = wrapped(explanation) if explanation else []
+    if not result.designs:
         head = "No mechanism of the wanted kinds solves the task."
-        if found.task.kind == "improve":
+        if result.task.kind == "improve":
             head = "No start leads to a design."
         return [*sentence(bad, head), *advice]
     lines = sentence(bad, "No design is free of defects.")
-    cost = found.costliest
+    cost = result.most_restrictive
     if cost is not None:
         wish, count = cost
-        told = f"The wish that costs most is {wish}: without it {count} would be sound."
-        lines += wrapped(told)
+        first = f"The requirement that rejects the most designs is {wish}:"
+        lines += wrapped(f"{first} without it {count} would be sound.")
     lines += advice
-    shown = _examples(found)
+    shown = _examples(result)
     for design in shown:
         reason = f"{design.mechanism} driven at {design.driven}: "
         lines += wrapped(reason + design.defects[0].message, "  ", "    ")
-    more = len(found.refused) - len(shown)
+    more = len(result.refused) - len(shown)
     if more > 0:
         lines += wrapped(f"and {more} more; --json lists all reasons", "  ")
     return lines
 
 
-def _examples(found: Synthesis) -> list[JudgedDesign]:
+def _examples(synthesis: Synthesis) -> list[JudgedDesign]:
     """All refused designs if they are few, else one for each kind of first defect."""
-    if len(found.refused) <= _MOST_REASONS:
-        return list(found.refused)
+    if len(synthesis.refused) <= _MOST_REASONS:
+        return list(synthesis.refused)
     first: dict[DefectKind, JudgedDesign] = {}
-    for design in found.refused:
+    for design in synthesis.refused:
         first.setdefault(design.kinds[0], design)
     return list(first.values())
 
@@ -222,9 +222,9 @@ def synthesize_command(
 ) -> None:
     """Find mechanisms for a task: poses, points, a curve or a function.
 
-    Every solution is listed; designs that change branch or circuit, pass the
-    positions out of order or miss a wish are refused with their reason. The
-    others are written as mechanism files, best first.
+    Every solution is listed. Designs that change branch or circuit, pass the
+    positions out of order or break a requirement are rejected, with the reason.
+    The others are written as mechanism files, best first.
 
     \b
       linkwork synthesize five-poses   (a task to begin with)
@@ -236,41 +236,41 @@ def synthesize_command(
     if output is None and any((every, draw, csv, html, force)):
         raise InputError("--all, --draw, --csv, --html and --force need a folder: add -o FOLDER")
     # a task in a file finds the files that it names beside it
-    asked = Task.load(task) if os.path.exists(task) else Task.loads(*text_of_source(task))
+    loaded = Task.load(task) if os.path.exists(task) else Task.loads(*text_of_source(task))
     if output is not None:
-        earlier = check_folder(as_path(output), options, asked.described)
+        earlier = check_folder(as_path(output), options, loaded.described)
     try:
         with progress("solving the task") as tell:
-            found = asked.solve(progress=tell)
+            synthesis = loaded.solve(progress=tell)
     except KeyboardInterrupt:
         raise KeyboardInterrupt("before there was a design") from None
-    if found.interrupted:
+    if synthesis.interrupted:
         answer_interrupt()
-    if not found.sound:
+    if not synthesis.sound:
         try:
             with progress("trying changes of the task"):
-                advice_of(found)  # which is kept
+                advice_of(synthesis)  # which is kept
         except KeyboardInterrupt:
-            found = replace(found, what_helps=str)
+            synthesis = replace(synthesis, what_helps=str)
             answer_interrupt()
     files: dict[int, str] = {}
     if output is not None:
         with progress("writing designs") as tell:
-            files = write_designs(found, output, options, tell, earlier)
+            files = write_designs(synthesis, output, options, tell, earlier)
     if as_json:
-        advice = {"remarks": list(remarks_on(found)), "advice": advice_of(found)}
-        print_json({**found.to_dict(files), **advice})
+        advice = {"remarks": list(remarks_on(synthesis)), "advice": advice_of(synthesis)}
+        print_json({**synthesis.to_dict(files), **advice})
     else:
-        lines = synthesis_lines(found)
+        lines = synthesis_lines(synthesis)
         if output is not None:
             count = f"{len(files)} design{'' if len(files) == 1 else 's'}"
-            written = [count, *task_copy(found.task).files]
-            told = f"Wrote {', '.join(written[:-1])} and {written[-1]} in {output}."
-            if keeps_earlier(found, earlier):
-                told = f"Wrote nothing: {output} keeps its earlier designs and their task."
-            lines += ["", *wrapped(told)]
+            written = [count, *task_copy(synthesis.task).files]
+            message = f"Wrote {', '.join(written[:-1])} and {written[-1]} in {output}."
+            if keeps_earlier(synthesis, earlier):
+                message = f"Wrote nothing: {output} keeps its earlier designs and their task."
+            lines += ["", *wrapped(message)]
         print_lines(lines)
-    if not found.delivered:
+    if not synthesis.delivered:
         context.exit(1)
 
 
@@ -327,15 +327,16 @@ def atlas_command(
         raise InputError(error.problems[0].message) from None
     earlier = () if output is None else _OWN.check(as_path(output), force)
     with progress("comparing paths"):
-        asked = PathAtlas.shipped() if file is None else PathAtlas.load(file)
-        found = asked.nearest(curve.points, 100 if count is None else count)
+        atlas = PathAtlas.shipped() if file is None else PathAtlas.load(file)
+        near = atlas.nearest(curve.points, 100 if count is None else count)
     files: list[str] = []
     if output is not None:
-        files = _write(found, as_path(output), earlier)
+        files = _write(near, as_path(output), earlier)
     if as_json:
-        print_json({"paths": len(asked), "nearest": [_data(n, files) for n in found]})
+        print_json({"paths": len(atlas), "nearest": [_data(n, files) for n in near]})
         return
-    lines = [*title_lines(f"{len(found)} of {len(asked)} paths near {sources[0]}"), *_rows(found)]
+    title = f"{len(near)} of {len(atlas)} paths near {sources[0]}"
+    lines = [*title_lines(title), *_path_rows(near)]
     if files:
         lines += ["", *wrapped(f"Wrote {len(files)} mechanisms in {output}.")]
     print_lines(lines)
@@ -356,18 +357,18 @@ def _index(stores: tuple[str, ...], output: str | None, as_json: bool) -> None:
     count = len({as_path(store).resolve() for store in stores})
     shown = "1 store" if count == 1 else f"{count} stores"
     print_lines(wrapped(f"Wrote {len(made):,} paths of {shown} to {output}."))
-    for told in made.unfinished:
-        print_lines(wrapped(f"{told}. Finish it and repeat this command for the others."))
+    for problem in made.unfinished:
+        print_lines(wrapped(f"{problem}. Finish it and repeat this command for the others."))
 
 
-def _write(found: tuple[NearPath, ...], folder: Path, earlier: Collection[str]) -> list[str]:
-    digits, files = len(str(len(found))), []
+def _write(paths: tuple[NearPath, ...], folder: Path, earlier: Collection[str]) -> list[str]:
+    digits, files = len(str(len(paths))), []
     with progress("writing mechanisms") as tell, _OWN.written(folder, earlier) as part:
-        for near in found:
+        for near in paths:
             name = f"near-{near.number:0{digits}}.toml"
             save(near.mechanism.description, part / name)
             files.append(str(folder / name))
-            tell(near.number / len(found))
+            tell(near.number / len(paths))
     return files
 
 
@@ -381,9 +382,9 @@ def _data(near: NearPath, files: list[str]) -> dict[str, object]:
     }
 
 
-def _rows(found: tuple[NearPath, ...]) -> list[str]:
+def _path_rows(paths: tuple[NearPath, ...]) -> list[str]:
     """The nearest ones."""
-    shown = found[:_SHOWN]
+    shown = paths[:_SHOWN]
     lines = table_lines(
         [
             Column(header="", cells=[str(near.number) for near in shown], align="right"),
@@ -394,5 +395,5 @@ def _rows(found: tuple[NearPath, ...]) -> list[str]:
             Column(header="", cells=["mirrored" if n.is_mirrored else "" for n in shown]),
         ]
     )
-    more = len(found) - len(shown)
+    more = len(paths) - len(shown)
     return lines + (wrapped(f"and {more} more; --json lists all", "  ") if more else [])

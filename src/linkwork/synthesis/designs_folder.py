@@ -48,7 +48,7 @@ class FolderOptions:
 
 
 def write_designs(
-    found: Synthesis,
+    synthesis: Synthesis,
     folder: str | Path,
     options: FolderOptions,
     progress: Callable[[float], None] | None = None,
@@ -67,21 +67,21 @@ def write_designs(
     """
     root = as_path(folder)
     if earlier is None:
-        earlier = check_folder(root, options, found.task)
-    if keeps_earlier(found, earlier):
+        earlier = check_folder(root, options, synthesis.task)
+    if keeps_earlier(synthesis, earlier):
         return {}
     chosen = [
         (k, design)
-        for k, design in enumerate(found.designs)
+        for k, design in enumerate(synthesis.designs)
         if design.delivered or (options.refused and design.kinds)
     ]
     names: dict[int, str] = {}
     interrupted = False
-    with _own_files(options, found.task).written(root, earlier) as part:
+    with _designs_folder(options, synthesis.task).written(root, earlier) as part:
         if options.refused:
             (part / REFUSED).mkdir()
         for done, (k, design) in enumerate(chosen):
-            name = f"{_stem(found.task)}-{design.number:02}.toml"
+            name = f"{_stem(synthesis.task)}-{design.number:02}.toml"
             name = f"{REFUSED}/{name}" if design.kinds else name
             try:
                 if progress is not None:
@@ -96,14 +96,14 @@ def write_designs(
                 break
             names[k] = name
         try:
-            _write_tables(found, part, options, names)
+            _write_tables(synthesis, part, options, names)
         except KeyboardInterrupt:
             if earlier or not names:
                 raise
             interrupted = True
     if interrupted:
-        told = f"after {len(names)} of {len(chosen)} designs were written in {root}"
-        raise KeyboardInterrupt(told)
+        progress_made = f"after {len(names)} of {len(chosen)} designs were written in {root}"
+        raise KeyboardInterrupt(progress_made)
     return {k: str(root / name) for k, name in names.items()}
 
 
@@ -115,21 +115,21 @@ def _write_design(design: JudgedDesign, path: Path, draw: bool) -> None:
 
 
 def _write_tables(
-    found: Synthesis, part: Path, options: FolderOptions, files: Mapping[int, str]
+    synthesis: Synthesis, part: Path, options: FolderOptions, files: Mapping[int, str]
 ) -> None:
     """The task with the files that it names, the table, the front and the page."""
-    for place, text in task_copy(found.task).files.items():
+    for place, text in task_copy(synthesis.task).files.items():
         (part / place).parent.mkdir(parents=True, exist_ok=True)
         save_text(text, part / place)
     if options.csv:
-        save_text(csv_text(designs_table(found, files)), part / _TABLE)
-    front = _front_picture(found) if options.draw or options.html else b""
+        save_text(csv_text(designs_table(synthesis, files)), part / _TABLE)
+    front = _front_picture(synthesis) if options.draw or options.html else b""
     if options.draw and front:
         save_bytes(front, part / _FRONT)
     if options.html:
-        shown = found.delivered[:_PICTURES]
+        shown = synthesis.delivered[:_PICTURES]
         scenes = [_scene(design) for design in shown]
-        save_text(designs_page(found, scenes, files, front), part / _PAGE)
+        save_text(designs_page(synthesis, scenes, files, front), part / _PAGE)
 
 
 def _scene(design: JudgedDesign) -> Scene:
@@ -147,13 +147,13 @@ def _scene(design: JudgedDesign) -> Scene:
     return Mechanism(design.linkage).scene(design.first_input, options=options)
 
 
-def _front_picture(found: Synthesis) -> bytes:
+def _front_picture(synthesis: Synthesis) -> bytes:
     """The trade-off between goals as SVG; none if there is no front of two designs."""
-    front = front_of(found)
-    numbers = [design.number for design in found.delivered]
+    front = front_of(synthesis)
+    numbers = [design.number for design in synthesis.delivered]
     if len(numbers) < 2 or not front:
         return b""
-    return render(front_chart(found.task.name, front, numbers), "svg")
+    return render(front_chart(synthesis.task.name, front, numbers), "svg")
 
 
 def check_folder(root: Path, options: FolderOptions, task: Task) -> Collection[str]:
@@ -164,22 +164,22 @@ def check_folder(root: Path, options: FolderOptions, task: Task) -> Collection[s
     InputError
         If the folder holds files that are not to be replaced, or cannot be written.
     """
-    return _own_files(options, task).check(root, options.force)
+    return _designs_folder(options, task).check(root, options.force)
 
 
-def keeps_earlier(found: Synthesis, earlier: Collection[str]) -> bool:
+def keeps_earlier(synthesis: Synthesis, earlier: Collection[str]) -> bool:
     """Whether a folder keeps its earlier designs because there are none to replace them."""
-    return not found.delivered and any(map(_DESIGN.fullmatch, earlier))
+    return not synthesis.delivered and any(map(_DESIGN.fullmatch, earlier))
 
 
-def _own_files(options: FolderOptions, task: Task) -> OwnFiles:
+def _designs_folder(options: FolderOptions, task: Task) -> OwnFiles:
     design = rf"({REFUSED}/)?{re.escape(_stem(task))}-\d+\.(toml|svg)"
     further = {_TABLE: options.csv, _FRONT: options.draw, _PAGE: options.html}
     named = [re.escape(name) for name, is_written in further.items() if is_written]
     return OwnFiles(
         run="synthesis",
         option="--force (in Python force=True)",
-        # file systems that do not tell letters apart have one file for both
+        # on file systems that ignore case both names are one file
         files=re.compile("|".join([design, *named]), re.IGNORECASE),
         folders=(".", REFUSED),
         read=task_copy(task).sources,

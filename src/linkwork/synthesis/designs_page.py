@@ -42,13 +42,13 @@ _MOST_ROWS = 2000
 
 
 def designs_page(
-    found: Synthesis, scenes: Sequence[Scene], files: Mapping[int, str], front: bytes = b""
+    synthesis: Synthesis, scenes: Sequence[Scene], files: Mapping[int, str], front: bytes = b""
 ) -> str:
     """A page that works offline: counts, pictures of the best designs, all verdicts.
 
     Parameters
     ----------
-    found : Synthesis
+    synthesis : Synthesis
     scenes : sequence of Scene
         Pictures of the first delivered designs.
     files : Mapping[int, str]
@@ -59,27 +59,27 @@ def designs_page(
     inks = Inks()
     pictures = [
         f"<figure>{inline_svg(scene, inks, longest=_LONGEST)}"
-        f"<figcaption>{html.escape(_caption(found, design))}</figcaption></figure>"
-        for scene, design in zip(scenes, found.delivered, strict=False)
+        f"<figcaption>{html.escape(_caption(synthesis, design))}</figcaption></figure>"
+        for scene, design in zip(scenes, synthesis.delivered, strict=False)
     ]
-    title = html.escape(found.task.name)
+    title = html.escape(synthesis.task.name)
     return (
         f'<!doctype html><html lang="en"><head><meta charset="utf-8"><title>{title}</title>'
         '<meta name="viewport" content="width=device-width,initial-scale=1">'
         f"<style>{_STYLE}{inks.rules(_CLASS)}</style></head>"
-        f'<body class="{_CLASS}"><h1>{title}</h1><dl>{"".join(_counts(found))}</dl>'
+        f'<body class="{_CLASS}"><h1>{title}</h1><dl>{"".join(_counts(synthesis))}</dl>'
         f"{_front(front)}"
         f'<h2>Delivered</h2><div class="pictures">{"".join(pictures)}</div>'
-        f'<h2>All designs</h2><div class="wide"><table><thead><tr>{_head(found)}</tr></thead>'
-        f"<tbody>{''.join(_rows(found, files))}</tbody></table></div>"
+        f'<h2>All designs</h2><div class="wide"><table><thead><tr>{_head(synthesis)}</tr></thead>'
+        f"<tbody>{''.join(_design_rows(synthesis, files))}</tbody></table></div>"
         f"<script>{_SORT}</script></body></html>\n"
     )
 
 
-def _solutions(found: Synthesis) -> tuple[str, str]:
-    if found.starts:
-        return "starts", str(found.starts)
-    return "solutions", f"{found.complex} complex, {found.real} real, {found.proved} proved"
+def _solutions(solved: Synthesis) -> tuple[str, str]:
+    if solved.starts:
+        return "starts", str(solved.starts)
+    return ("solutions", f"{solved.complex} complex, {solved.real} real, {solved.proved} proved")
 
 
 def _front(picture: bytes) -> str:
@@ -89,26 +89,26 @@ def _front(picture: bytes) -> str:
     return f'<h2>Front</h2><figure class="front">{shown}</figure>'
 
 
-def _counts(found: Synthesis) -> Iterator[str]:
+def _counts(synthesis: Synthesis) -> Iterator[str]:
     pairs = [
-        _solutions(found),
-        ("mechanisms", str(found.linkages)),
-        ("designs", str(len(found.designs))),
-        *((kind.value, str(count)) for kind, count in found.defects.items()),
-        ("delivered", f"{len(found.delivered)} of {found.sound} without defects"),
-        ("completeness", found.message),
+        _solutions(synthesis),
+        ("mechanisms", str(synthesis.linkages)),
+        ("designs", str(len(synthesis.designs))),
+        *((kind.value, str(count)) for kind, count in synthesis.defects.items()),
+        ("delivered", f"{len(synthesis.delivered)} of {synthesis.sound} without defects"),
+        ("completeness", synthesis.message),
     ]
-    pairs += [("remark", text) for text in remarks_on(found)]
-    if advice := advice_of(found):
+    pairs += [("remark", text) for text in remarks_on(synthesis)]
+    if advice := advice_of(synthesis):
         pairs.append(("advice", advice))
-    if len(found.designs) > _MOST_ROWS:
+    if len(synthesis.designs) > _MOST_ROWS:
         pairs.append(("table", f"the first {_MOST_ROWS} designs; designs.csv holds all"))
     for name, text in pairs:
         yield f"<dt>{html.escape(name)}</dt><dd>{html.escape(text)}</dd>"
 
 
-def _caption(found: Synthesis, design: JudgedDesign) -> str:
-    task = found.task
+def _caption(synthesis: Synthesis, design: JudgedDesign) -> str:
+    task = synthesis.task
     return (
         f"{design.number}: {design.mechanism} driven at {design.driven}, "
         f"transmission angle {rounded_down(design.transmission, 4):g}{task.angle.sign} or more, "
@@ -116,19 +116,19 @@ def _caption(found: Synthesis, design: JudgedDesign) -> str:
     )
 
 
-def _head(found: Synthesis) -> str:
-    task, unit = found.task, f"[{found.error_unit}]" if found.error_unit else ""
+def _head(result: Synthesis) -> str:
+    task, unit = result.task, f"[{result.error_unit}]" if result.error_unit else ""
     names = (
         "design", "mechanism", "drive", f"transmission [{task.angle.value}]",
         f"size [{task.length}]", f"error {unit}".strip(), "score",
-        *(f"miss of {name}" for name in goal_misses(found.designs)), "defect",
+        *(f"miss of {name}" for name in goal_misses(result.designs)), "defect",
     )  # fmt: skip
     return "".join(f"<th><button>{html.escape(name)}</button></th>" for name in names)
 
 
-def _rows(found: Synthesis, files: Mapping[int, str]) -> Iterator[str]:
-    goals = goal_misses(found.designs)
-    for k, design in enumerate(found.designs[:_MOST_ROWS]):
+def _design_rows(synthesis: Synthesis, files: Mapping[int, str]) -> Iterator[str]:
+    goals = goal_misses(synthesis.designs)
+    for k, design in enumerate(synthesis.designs[:_MOST_ROWS]):
         defect = design.defects[0].message if design.kinds else ""
         number = str(k + 1)
         if k in files:

@@ -76,8 +76,8 @@ def improve(
     >>> [round(design.goals["stroke(d)"], 4) for design in front]
     [0.0, 49.7142]
     """
-    wanted = (goal,) if isinstance(goal, Mapping) else tuple(goal)
-    for one in wanted:
+    goal_tables = (goal,) if isinstance(goal, Mapping) else tuple(goal)
+    for one in goal_tables:
         if not isinstance(one, Mapping):
             raise InputError(
                 f'a goal is a table, {{"of": "stroke(d)", "target": 40}}, got {as_told(goal)}; '
@@ -92,5 +92,5 @@ def improve(
         spread=spread,
         seed=seed,
     )
-    goals = tuple(map(read_goal, wanted))
+    goals = tuple(map(read_goal, goal_tables))
     return improved_designs(mechanism.model, goals, settings, progress)

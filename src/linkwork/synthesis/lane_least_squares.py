@@ -1,4 +1,4 @@
-"""Bounds of the parameters and of the own variables of a fit of lanes."""
+"""Bounds of the parameters and of the row variables of a fit of lanes."""
 
 from __future__ import annotations
 
@@ -41,13 +41,13 @@ class Box:
 
 
 @dataclass(frozen=True, kw_only=True)
-class OwnVariables:
-    """Where the own variables of rows may be: between bounds, and in order.
+class RowVariables:
+    """Bounds and order of the row variables, of which each row has one.
 
     Parameters
     ----------
     least, most : float
-        The bounds of all of them.
+        The bounds of all row variables.
     in_order : bool
         Whether they rise from row to row.
     gap, span : float
@@ -99,7 +99,7 @@ class OwnVariables:
 # Bounded least squares of many starts at once, by Levenberg and Marquardt.
 #
 # A lane minimises |f(x, t)|² over parameters x (P,) in a box. The residuals come in N rows of m,
-# and row k may have a variable t_k of its own, such as the input at which a curve comes nearest to
+# and row k may have one row variable t_k, such as the input at which a curve comes nearest to
 # a point. These variables are eliminated from every step, eq. (152), and may be kept in order.
 #
 # References
@@ -110,7 +110,7 @@ class OwnVariables:
 
 
 _FIRST_DAMPING, _LESS, _MORE = 1e-3, 0.2, 4.0
-_AFTER_MORE = 0.8  # less at the first step that gains: what has just failed would fail again
+_AFTER_MORE = 0.8  # less at the first step that gains: the failed step would fail again
 _LARGEST_DAMPING, _SMALLEST_DAMPING = 1e10, 1e-14
 _IDLE = 1e-13  # relative decrease of the sum of squares: rounding
 _MOST_IDLE = 3  # steps in a row
@@ -127,7 +127,7 @@ class Residuals:
     rows : (D, N, m)
     by_x : (D, N, m, P)
     by_t : (D, N, m), optional
-        Each row by its own variable; ``None`` without these variables.
+        Each row by its row variable; ``None`` without row variables.
     shared : (D, K)
         Further residuals, of the parameters alone.
     shared_by_x : (D, K, P)
@@ -141,7 +141,7 @@ class Residuals:
 
     def take(self, which: BoolArray) -> Residuals:
         """Those of some lanes."""
-        parts: list[Any] = [None if own is None else own[which] for own in self._parts]
+        parts: list[Any] = [None if part is None else part[which] for part in self._parts]
         return Residuals(*parts)
 
     def replaced(self, which: BoolArray, other: Residuals) -> Residuals:
@@ -156,7 +156,7 @@ class Residuals:
     def joined(cls, parts: Sequence[Self]) -> Self:
         """Those of several parts in one."""
         columns = zip(*(part._parts for part in parts), strict=True)
-        every: list[Any] = [None if own[0] is None else np.concatenate(own) for own in columns]
+        every: list[Any] = [None if each[0] is None else np.concatenate(each) for each in columns]
         return cls(*every)
 
     @property
@@ -173,11 +173,11 @@ class Residuals:
         return np.asarray(np.where(np.isfinite(total), total, np.inf))
 
 
-#: Residuals of parameters (D, P) and own variables (D, N) of the lanes with these numbers, (D,).
+#: Residuals of parameters (D, P) and row variables (D, N) of the lanes with these numbers, (D,).
 Evaluate = Callable[[Array, Array, IndexArray], Residuals]
 
 
-_ANYWHERE = OwnVariables()
+_ANYWHERE = RowVariables()
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -253,7 +253,7 @@ def minimise(
     box: Box,
     steps: int,
     *,
-    own: OwnVariables = _ANYWHERE,
+    row_variables: RowVariables = _ANYWHERE,
 ) -> LaneFit:
     """Lanes after some steps, or fewer where they gain nothing more.
 
@@ -263,7 +263,7 @@ def minimise(
     fit : LaneFit
     box : Box
     steps : int
-    own : OwnVariables
+    row_variables : RowVariables
 
     Returns
     -------
@@ -275,9 +275,9 @@ def minimise(
     An interruption (Ctrl-C) ends the steps; the lanes stay where they are then.
     """
     lanes = np.arange(len(fit))
-    found = fit.take(lanes)
+    fitted = fit.take(lanes)
     x = box.inside(fit.x)
-    t = own.inside(fit.t)
+    t = row_variables.inside(fit.t)
     now = evaluate(x, t, lanes)
     # sums and damping of another problem are of no use here
     damping = np.minimum(fit.damping, _FIRST_DAMPING)
@@ -288,16 +288,16 @@ def minimise(
         for _ in range(steps):
             done = work.done
             if done.any():
-                found.put(lanes, work)
+                fitted.put(lanes, work)
                 left = ~done
                 lanes, work, now = lanes[left], work.take(left), now.take(left)
             if not len(lanes):
                 break
-            work, now = _step(evaluate, work, now, lanes, box, own)
+            work, now = _step(evaluate, work, now, lanes, box, row_variables)
     except KeyboardInterrupt:
         interrupted = True
-    found.put(lanes, work)
-    return replace(found, interrupted=interrupted or fit.interrupted)
+    fitted.put(lanes, work)
+    return replace(fitted, interrupted=interrupted or fit.interrupted)
 
 
 def _step(
@@ -306,11 +306,11 @@ def _step(
     now: Residuals,
     lanes: IndexArray,
     box: Box,
-    own: OwnVariables,
+    row_variables: RowVariables,
 ) -> tuple[LaneFit, Residuals]:
     """One step of every lane; those that gain nothing by it stay and are damped more."""
-    dx, dt = _newton_step(work, now, box, own)
-    x, t = box.inside(work.x + dx), own.inside(work.t + dt)
+    dx, dt = _newton_step(work, now, box, row_variables)
+    x, t = box.inside(work.x + dx), row_variables.inside(work.t + dt)
     there = evaluate(x, t, lanes)
     total = there.total
     better = total < work.total
@@ -349,7 +349,7 @@ def _either(which: BoolArray, new: Array, old: Array) -> Array:
 
 @np.errstate(all="ignore")  # lanes without residuals have no step
 def _newton_step(
-    work: LaneFit, now: Residuals, box: Box, rows: OwnVariables
+    work: LaneFit, now: Residuals, box: Box, rows: RowVariables
 ) -> tuple[Array, Array]:
     """Changes of x (D, P) and t (D, N)."""
     count, parameters = work.x.shape
@@ -365,12 +365,12 @@ def _newton_step(
     if now.by_t is None:
         dx = _solved(normal, gradient, scale, work, box)
         return dx, np.zeros_like(work.t)
-    # eq. (152): the own variables of rows, or of rows that touch, are eliminated
-    own = np.einsum("dnm,dnm->dn", now.by_t, now.by_t)
+    # eq. (152): the row variables, or those of rows that touch, are eliminated
+    by_t = np.einsum("dnm,dnm->dn", now.by_t, now.by_t)
     slope = np.einsum("dnm,dnm->dn", now.by_t, now.rows)
     mixed = np.einsum("dnm,dnmp->dnp", now.by_t, now.by_x)
-    curve = own * (1.0 + work.damping[:, None]) + EPSILON * (
-        own.max(axis=1, keepdims=True) + 1e-300
+    curve = by_t * (1.0 + work.damping[:, None]) + EPSILON * (
+        by_t.max(axis=1, keepdims=True) + 1e-300
     )
     together = rows.together(work.t, slope / curve)
     summed, slopes, mixtures = curve, slope, mixed
@@ -393,7 +393,7 @@ def _solved(normal: Array, gradient: Array, scale: Array, work: LaneFit, box: Bo
     """The damped step of x, which leaves parameters at their bounds that would pass them."""
     held = ((work.x <= box.least) & (gradient > 0.0)) | ((work.x >= box.most) & (gradient < 0.0))
     held |= box.least == box.most
-    # parameters have units of their own; those without effect stay
+    # parameters have different units; those without effect stay
     damped = scale + box.least_scale(scale)
     diagonal = work.damping[:, None] * damped + _SINGULAR * np.where(damped > 0.0, damped, 1.0)
     parameters = normal.shape[1]

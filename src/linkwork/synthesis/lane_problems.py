@@ -16,7 +16,7 @@ import numpy as np
 
 from linkwork.core.foundation.arrays import AnyArray, Array, BoolArray, IndexArray
 from linkwork.core.foundation.loading import cores, share_out
-from linkwork.synthesis.lane_least_squares import Box, LaneFit, OwnVariables, Residuals, minimise
+from linkwork.synthesis.lane_least_squares import Box, LaneFit, Residuals, RowVariables, minimise
 
 # ----------------------------------------------------------------------
 # Constraints of lanes, by the method of multipliers.
@@ -90,23 +90,23 @@ class Multipliers:
 POWERS = (2, 4, 8, 16, 32, 64, 128, 256, 512)
 
 
-def largest_misses(found: Residuals, counted: BoolArray) -> Array:
+def largest_misses(residuals: Residuals, counted: BoolArray) -> Array:
     """The largest distance or counted shared residual of lanes, (D,)."""
-    rows = np.sqrt(np.einsum("dnm,dnm->dn", found.rows, found.rows))
-    every = np.concatenate([rows, np.abs(found.shared[:, counted])], axis=1)
+    rows = np.sqrt(np.einsum("dnm,dnm->dn", residuals.rows, residuals.rows))
+    every = np.concatenate([rows, np.abs(residuals.shared[:, counted])], axis=1)
     return np.asarray(every.max(axis=1, initial=0.0))
 
 
 @np.errstate(all="ignore")  # lanes without residuals stay without
-def powered(found: Residuals, power: int, largest: Array, counted: BoolArray) -> Residuals:
+def powered(residuals: Residuals, power: int, largest: Array, counted: BoolArray) -> Residuals:
     """Residuals of powers, relative to the largest miss (D,) at the begin of their round.
 
     ``counted`` (K,): the shared residuals that are misses; the others, broken bounds, stay.
     """
     scale = largest[:, None]
-    size = np.sqrt(np.einsum("dnm,dnm->dn", found.rows, found.rows))
+    size = np.sqrt(np.einsum("dnm,dnm->dn", residuals.rows, residuals.rows))
     factor = (size / scale) ** (power - 1) / scale
-    unit = found.rows / np.where(size > 0.0, size, 1.0)[:, :, None]
+    unit = residuals.rows / np.where(size > 0.0, size, 1.0)[:, :, None]
 
     def bent(slope: Array) -> Array:
         # eq. (158): |f|^(k-1) (I + (k - 1) u uᵀ) df
@@ -115,26 +115,26 @@ def powered(found: Residuals, power: int, largest: Array, counted: BoolArray) ->
         whole = slope + (power - 1) * turned
         return np.asarray(factor.reshape(*factor.shape, *[1] * (slope.ndim - 2)) * whole)
 
-    shared, by_x = found.shared / scale, found.shared_by_x / scale[:, :, None]
-    own = np.where(counted, np.abs(shared) ** (power - 1), 1.0)
-    slope = np.where(counted, power * own, 1.0)
+    shared, by_x = residuals.shared / scale, residuals.shared_by_x / scale[:, :, None]
+    factors = np.where(counted, np.abs(shared) ** (power - 1), 1.0)
+    slope = np.where(counted, power * factors, 1.0)
     return Residuals(
-        found.rows * factor[:, :, None],
-        bent(found.by_x),
-        None if found.by_t is None else bent(found.by_t),
-        shared * own,
+        residuals.rows * factor[:, :, None],
+        bent(residuals.by_x),
+        None if residuals.by_t is None else bent(residuals.by_t),
+        shared * factors,
         by_x * slope[:, :, None],
     )
 
 
 # ----------------------------------------------------------------------
-# Work on parts of lanes on all cores, which tells its progress and which the user may stop.
+# Work on parts of lanes on all cores, with progress; the user may stop it.
 
 
 _PART = 8  # lanes of one thread, of many rows
 _ROWS = 4000  # of all lanes of a thread: fewer would take as long
 
-#: Works on lanes, and calls what it gets before each step.
+#: Works on lanes, and calls its second argument before each step.
 Work = Callable[[IndexArray, Callable[[], None]], None]
 
 
@@ -151,7 +151,7 @@ class LaneWork:
     Attributes
     ----------
     tell : callable, optional
-        Gets the finished fraction.
+        Called with the finished fraction.
     whole, done : float
         Steps, each of which counts for the share of lanes that go on.
     share_of_lanes : float
@@ -209,7 +209,7 @@ class LaneProblem(ABC):
     Parameters
     ----------
     box : Box
-    own_variables : OwnVariables
+    row_variables : RowVariables
         Those of rows.
     lanes, rows : int
     counted : (K,) bool
@@ -225,9 +225,9 @@ class LaneProblem(ABC):
     most_lanes = 64
 
     def __init__(
-        self, box: Box, own_variables: OwnVariables, lanes: int, rows: int, counted: BoolArray
+        self, box: Box, row_variables: RowVariables, lanes: int, rows: int, counted: BoolArray
     ) -> None:
-        self.box, self.own_variables, self.lanes, self.counted = box, own_variables, lanes, counted
+        self.box, self.row_variables, self.lanes, self.counted = box, row_variables, lanes, counted
         self.power, self._largest = 1, np.ones(lanes)
         self.work = LaneWork(rows, self.most_lanes)
 
@@ -242,17 +242,17 @@ class LaneProblem(ABC):
         """Those of all constraints."""
         return ()
 
-    def raised(self, found: Residuals, lanes: IndexArray, power: int | None = None) -> Residuals:
+    def raised(self, result: Residuals, lanes: IndexArray, power: int | None = None) -> Residuals:
         """Residuals of the power of the round, or of another one."""
         power = power or self.power
         if power == 1:
-            return found
-        return powered(found, power, self._largest[lanes], self.counted)
+            return result
+        return powered(result, power, self._largest[lanes], self.counted)
 
     def weigh(self, weight: float) -> None:
         """Change the weight of all constraints."""
-        for own in self.multipliers:
-            own.weigh(weight)
+        for multipliers in self.multipliers:
+            multipliers.weigh(weight)
 
     def prepare(self, fit: LaneFit, lanes: IndexArray, count: Callable[[], None]) -> LaneFit:
         """Some lanes before the steps of a round."""
@@ -264,12 +264,12 @@ class LaneProblem(ABC):
             return fit
         every = fit.take(np.arange(len(fit)))
 
-        def work(own: IndexArray, count: Callable[[], None]) -> None:
-            start = self.prepare(fit.take(own), own, count)
-            every.put(own, start)
+        def work(part: IndexArray, count: Callable[[], None]) -> None:
+            start = self.prepare(fit.take(part), part, count)
+            every.put(part, start)
             if self.power > 1:
-                now = self.evaluate(start.x, start.t, own, 1)
-                self._largest[own] = np.maximum(largest_misses(now, self.counted), 1e-300)
+                now = self.evaluate(start.x, start.t, part, 1)
+                self._largest[part] = np.maximum(largest_misses(now, self.counted), 1e-300)
             begun = False
 
             def evaluate(x: Array, t: Array, lanes: IndexArray) -> Residuals:
@@ -277,16 +277,16 @@ class LaneProblem(ABC):
                 if begun:  # starts are measured in any case
                     count()
                 begun = True
-                return self.evaluate(x, t, own[lanes])
+                return self.evaluate(x, t, part[lanes])
 
-            after = minimise(evaluate, start, self.box, steps, own=self.own_variables)
-            every.put(own, after)
+            after = minimise(evaluate, start, self.box, steps, row_variables=self.row_variables)
+            every.put(part, after)
             if after.interrupted:
                 raise KeyboardInterrupt
             if self.multipliers:
-                self.evaluate(after.x, after.t, own)
+                self.evaluate(after.x, after.t, part)
                 for constraints in self.multipliers:
-                    constraints.update(own)
+                    constraints.update(part)
 
         self.work.share(keep, steps, work)
         return replace(every, interrupted=self.work.stopped)

@@ -14,7 +14,7 @@ REFUSED = "refused"
 # names of files of a synthesis
 _OWN = re.compile(
     r".+-\d+\.(toml|svg)|task\.toml|designs\.csv|front\.svg|index\.html|refused|\.linkwork.*",
-    re.IGNORECASE,  # disks that do not tell letters apart have one file for both
+    re.IGNORECASE,  # on file systems that ignore case both names are one file
 )
 
 

@@ -23,7 +23,7 @@ from linkwork.synthesis.tasks.task import Task as task_Task
 
 
 class Task:
-    """What a mechanism should do: poses, points or a function, with wishes.
+    """The task of a mechanism: poses, points or a function, with requirements.
 
     The class methods make tasks; keyword arguments are the other keys and tables of a task file.
 
@@ -65,7 +65,7 @@ class Task:
         ``inputs``: angles of the crank at the points. Timed points, and more than nine of them, are
         met by least squares. ``tolerance``: how far every point may be missed [length].
         """
-        wanted = {"order": order, **tables.pop("wanted", {})}
+        wanted_table = {"order": order, **tables.pop("wanted", {})}
         positions = _positions(points)
         if inputs is not None:
             if len(inputs) != len(positions):
@@ -74,7 +74,7 @@ class Task:
                 position["input"] = value
         for position in positions if tolerance else ():
             position["tolerance"] = tolerance
-        return cls._of("path", **_apart(tables, positions=positions, wanted=wanted))
+        return cls._of("path", **_apart(tables, positions=positions, wanted=wanted_table))
 
     @classmethod
     def function(cls, of: str | Sequence[Sequence[float]], **tables: Any) -> Self:
@@ -83,9 +83,9 @@ class Task:
         ``x``, ``input``, ``output``, ``positions``, ``spacing`` and ``fit`` are keys of the table
         of the function; all others are tables of the task.
         """
-        own = {key: tables.pop(key) for key in _OF_FUNCTIONS if key in tables}
-        own["of" if isinstance(of, str) else "pairs"] = of
-        return cls._of("function", **_apart(tables, function=own))
+        table = {key: tables.pop(key) for key in _OF_FUNCTIONS if key in tables}
+        table["of" if isinstance(of, str) else "pairs"] = of
+        return cls._of("function", **_apart(tables, function=table))
 
     @classmethod
     def improve(cls, mechanism: str | Path, **tables: Any) -> Self:
@@ -94,8 +94,8 @@ class Task:
         ``goal``, ``goals``, ``point``, ``vary``, ``bounds``, ``starts``, ``spread``, ``front`` and
         ``seed`` are keys of the table ``improve``; all others are tables of the task.
         """
-        own = {key: tables.pop(key) for key in _OF_IMPROVEMENTS if key in tables}
-        return cls._of("improve", **_apart(tables, mechanism=str(mechanism), improve=own))
+        table = {key: tables.pop(key) for key in _OF_IMPROVEMENTS if key in tables}
+        return cls._of("improve", **_apart(tables, mechanism=str(mechanism), improve=table))
 
     @classmethod
     def load(cls, path: str | Path) -> Self:
@@ -104,7 +104,7 @@ class Task:
         Raises
         ------
         MechanismFileError
-            With every problem found: file, line, key.
+            Lists all problems with file, line and key.
         """
         return cls(task_file.read_task(path), str(path))
 
@@ -131,10 +131,10 @@ class Task:
             If the task has no solver, or its conditions contradict each other.
         """
         try:
-            found = solve_task(self.described, progress=progress)
+            solved = solve_task(self.described, progress=progress)
         except MechanismError as error:
             raise task_file.located_task_error(error, self.described, self._name) from None
-        return Synthesis(**{f.name: getattr(found, f.name) for f in fields(found)})
+        return Synthesis(**{f.name: getattr(solved, f.name) for f in fields(solved)})
 
     def defects_of(
         self, mechanism: Mechanism, inputs: Sequence[float], *, point: str | None = None
@@ -186,16 +186,16 @@ _OF_IMPROVEMENTS = (
 _OF_FUNCTIONS = ("x", "input", "output", "positions", "spacing", "fit")
 
 
-def _apart(tables: dict[str, Any], **own: Any) -> dict[str, Any]:
-    """The tables of a task, none of which is given twice."""
-    for name in sorted({*own, "task"} & tables.keys()):
+def _apart(tables: dict[str, Any], **named: Any) -> dict[str, Any]:
+    """The tables of a task; a table that is passed twice is an error."""
+    for name in sorted({*named, "task"} & tables.keys()):
         raise InputError(f'"{name}" is made of the other arguments: give its keys as arguments')
-    return {**own, **tables}
+    return {**named, **tables}
 
 
-def _positions(given: Any) -> list[dict[str, Any]]:
+def _positions(listed: Any) -> list[dict[str, Any]]:
     """Positions of rows: of three numbers poses; others are points, if the task's keys say so."""
-    rows = np.asarray(given, dtype=float).tolist() if isinstance(given, np.ndarray) else given
+    rows = np.asarray(listed, dtype=float).tolist() if isinstance(listed, np.ndarray) else listed
     return [
         {"point": list(row[:2]), "angle": row[2]} if len(row) == 3 else {"point": list(row)}
         for row in rows
@@ -242,7 +242,7 @@ class Synthesis(result_Synthesis):
         refused : bool
             Whether to write the refused designs too, in its folder ``refused``.
         force : bool
-            Whether to replace the files of an earlier synthesis in the folder; all others stay.
+            Whether to replace the files of an earlier synthesis in the folder; other files stay.
 
         Returns
         -------

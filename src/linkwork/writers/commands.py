@@ -131,9 +131,9 @@ def plot_command(
     mechanism = read_mechanism(file, changes)
     colours = theme_named(theme, THEMES)
     if kind in [which.value for which in CIRCUIT_KINDS]:
-        found = _circuits(mechanism, kind, {"against": against, "wrapped": wrapped, **sweeping})
+        circuits = _circuits(mechanism, kind, {"against": against, "wrapped": wrapped, **sweeping})
         with progress("drawing"):
-            write(circuits_plot(found, names, kind=kind), output, theme=colours)
+            write(circuits_plot(circuits, names, kind=kind), output, theme=colours)
         print_written(output, as_json)
         return
     with progress("sweeping") as tell:
@@ -385,7 +385,7 @@ def plates_command(
 
 
 def _page(stack: PlateStack) -> Iterator[str]:
-    """The bill of materials, and what is known of collisions."""
+    """The bill of materials, and the result of the collision check."""
     count = f"{len(stack.plates)} plates in {stack.layers} layers"
     yield from title_lines(f"{stack.mechanism}: {count}")
     yield from table_lines(list(_columns(stack)))
@@ -499,13 +499,13 @@ def _text_command(form: str) -> click.Command:
         if output is not None:
             write_text(output, [made.text])
         if as_json:
-            notes = [{"what": own.what, "places": list(own.places)} for own in made.left_out]
+            notes = [{"what": part.what, "places": list(part.places)} for part in made.left_out]
             print_json(
                 {"text": made.text, "left_out": notes, "written": [output] if output else []}
             )
             return
         click.echo(made.text if output is None else f"Wrote {output}.\n", nl=False)
-        lines = [line for own in made.left_out for line in wrapped(f"left out: {own}", "", "  ")]
+        lines = [line for part in made.left_out for line in wrapped(f"left out: {part}", "", "  ")]
         if lines:
             print_lines(lines, err=True)
 
@@ -516,7 +516,7 @@ def _text_command(form: str) -> click.Command:
 # ``linkwork export``
 
 
-def _plain_command(kind: str) -> click.Command:
+def _usual_command(kind: str) -> click.Command:
     """The command of a kind of file that has no options."""
 
     @click.command(kind, help=f"Write a {kind}.")
@@ -554,7 +554,7 @@ class _Export(click.Group):
     def get_command(self, ctx: click.Context, cmd_name: str) -> click.Command | None:
         if cmd_name in _COMMANDS:
             return _COMMANDS[cmd_name]
-        return _plain_command(cmd_name) if cmd_name in writers() else None
+        return _usual_command(cmd_name) if cmd_name in writers() else None
 
     def parse_args(self, ctx: click.Context, args: list[str]) -> list[str]:
         first = args[0] if args else "--help"

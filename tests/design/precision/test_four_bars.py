@@ -147,7 +147,7 @@ def test_freedoms_that_positions_leave_are_drawn() -> None:
     _, _, points = four_bar_points(CRANK[:4])
     rng = np.random.default_rng(1)
     drawn = list(positions_with_samples(points, np.full(4, NAN), np.zeros(0, complex), 3, rng))
-    assert [(len(p.pivots), len(p.points), p.wanted) for p in drawn] == [(2, 4, 4)] * 3
+    assert [(len(p.pivots), len(p.points), p.listed) for p in drawn] == [(2, 4, 4)] * 3
     total = 0
     for task in drawn:
         found = four_bars_through(task, track)

@@ -21,7 +21,7 @@ from linkwork.circuits.homotopy.monodromy import (
 from linkwork.circuits.homotopy.parameter_roots import roots_at
 from linkwork.core.foundation.arrays import Array, ComplexArray
 from linkwork.synthesis.precision import given_lengths as own_start_sets
-from linkwork.synthesis.precision.given_lengths import own_member
+from linkwork.synthesis.precision.given_lengths import solved_member
 from linkwork.synthesis.precision.positions import GivenLength, PrecisionPositions
 from linkwork.synthesis.precision.problem import PrecisionProblem
 from linkwork.synthesis.precision.solving import (
@@ -52,7 +52,7 @@ def _lengths(places: ComplexArray, names: list[str]) -> list[GivenLength]:
 
 
 def _solve(task: PrecisionPositions) -> PrecisionFourBars:
-    return four_bars_through(task, member=own_member(task.problem).member)
+    return four_bars_through(task, member=solved_member(task.problem).member)
 
 
 def _holds(found: PrecisionFourBars, places: ComplexArray) -> bool:
@@ -105,7 +105,7 @@ def test_the_four_bar_of_the_positions_is_among_all_that_have_its_lengths(
 def test_random_targets_of_a_kind_have_one_number_of_solutions(
     problem: PrecisionProblem, solutions: int
 ) -> None:
-    member = own_member(problem).member
+    member = solved_member(problem).member
     assert member is not None
     rng = np.random.default_rng(5)
     counts = []
@@ -120,7 +120,7 @@ def test_the_trace_test_alone_does_not_see_that_mirror_images_of_the_coupler_are
     problem = PrecisionProblem(
         poses=0, points=1, pivots=2, lengths=(("A", "B"), ("A", "P"), ("B", "P"))
     )
-    whole = own_member(problem).member
+    whole = solved_member(problem).member
     assert whole is not None
     x, x_bar, _, _, y, y_bar, _, _ = problem.linkages(whole.x, whole.parameters).T
     side = x * y_bar - x_bar * y
@@ -136,7 +136,7 @@ def test_the_trace_test_alone_does_not_see_that_mirror_images_of_the_coupler_are
 def test_lengths_that_contradict_a_pose_in_general_are_no_kind_of_task() -> None:
     """The leg at the given pivot has three conditions for two unknowns."""
     problem = PrecisionProblem(poses=1, points=2, pivots=1, lengths=(("A", "P"), ("A0", "A")))
-    own = own_member(problem)
+    own = solved_member(problem)
     assert own.member is None
     assert own.reason.startswith("in general some of the conditions contradict each other")
 
@@ -145,7 +145,7 @@ def test_a_start_set_is_kept_and_solved_anew_if_its_file_is_damaged(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     problem = PrecisionProblem(poses=1, points=1, pivots=2, lengths=(("A", "B"),))
-    solved = own_member(problem).member
+    solved = solved_member(problem).member
     solve, calls = own_start_sets._solved, list[Any]()
 
     def counted(*given: Any) -> Any:
@@ -157,7 +157,7 @@ def test_a_start_set_is_kept_and_solved_anew_if_its_file_is_damaged(
         monkeypatch.setattr(own_start_sets, "_KNOWN", {})
         if content is not None:
             own_start_sets._path(problem).write_bytes(content)
-        again = own_member(problem).member
+        again = solved_member(problem).member
         assert solved is not None
         assert again is not None
         assert again.x == pytest.approx(solved.x, rel=1e-9)
@@ -173,7 +173,7 @@ _GIVEN = {"fixed_pivots": [(0.0, 0.0), (100.0, 0.0)], "lengths": {"B P": 60}}
     [
         (
             {"_MOST_PATHS": 300, "_MOST_IN_NUMPY": 300},
-            r"from those of 8 tasks; not all solutions .* known: after 300 paths, which found",
+            r"from those of 8 tasks; not all solutions .* known: after 300 paths with",
         ),
         ({"_ROUNDS": 1, "_SEED": 12}, r"tasks; not all solutions .*: the trace test denies "),
     ],
@@ -205,15 +205,15 @@ def test_a_spent_budget_is_kept_until_more_may_be_spent(
         monkeypatch.setattr(own_start_sets, name, 20)
     problem = PrecisionProblem(poses=1, points=1, pivots=2, lengths=(("A", "B"),))
     monkeypatch.setattr(own_start_sets, "_KNOWN", {})
-    reason = own_member(problem).reason
+    reason = solved_member(problem).reason
     assert "after 20 paths" in reason
     monkeypatch.setattr(own_start_sets, "_KNOWN", {})
     monkeypatch.setattr(own_start_sets, "_solved", None)  # which would be an error
-    assert own_member(problem).reason == reason
+    assert solved_member(problem).reason == reason
     monkeypatch.undo()
     monkeypatch.setenv("LINKWORK_CACHE", str(tmp_path))
     monkeypatch.setattr(own_start_sets, "_KNOWN", {})
-    assert own_member(problem).member is not None
+    assert solved_member(problem).member is not None
 
 
 @pytest.mark.parametrize(

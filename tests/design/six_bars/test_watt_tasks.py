@@ -256,7 +256,7 @@ def test_missing_pairs_lie_between_those_given() -> None:
     [
         ({"positions": 5}, "5 given: give 6 or more"),
         ({"fit": "minimax"}, "has no effect on watt-ii"),
-        ({"mechanism": ["watt-ii", "four-bar"]}, "make it a task of its own"),
+        ({"mechanism": ["watt-ii", "four-bar"]}, "write a separate task for it"),
         ({"given": {"fixed_pivots": [[0, 0], [1, 0]]}}, "must be three pivots, A0, B0 and C0"),
         ({"given": {"fixed_pivots": [[0, 0], [0, 0], [1, 0]]}}, "of which neighbours differ"),
         ({"given": {"fixed_pivots": [[0, 0], [1, 0], [2, 0]]}}, "leave the start angles no choice"),

@@ -247,7 +247,7 @@ def test_designs_with_given_pivots_are_proved_through_all_four_poses(key: str) -
     assert found.dyads[0].error < 1e-9
     assert found.linkages > 5
     for design in found.of_loops:
-        given, k = design.group.given, design.index
+        given, k = design.group.candidates, design.index
         crank = np.abs(given.moving_a[k] - given.fixed_a[k])
         # both pivots and their distance are known to the error, and with them all four poses
         assert np.ptp(crank) <= 4.0 * given.error[k] + 1e-12
@@ -341,7 +341,7 @@ def test_few_poses_are_met_within_their_tolerances(timed: bool) -> None:
 
     exact, near = solved(0.0, 0.0), solved(30.0, 8.0)
     assert len(near.designs) > 20 * len(exact.designs)
-    assert "within the tolerances, the wanted one first" in near.message
+    assert "within the tolerances, the exact one first" in near.message
     if not timed:
         assert not exact.delivered
     assert near.delivered

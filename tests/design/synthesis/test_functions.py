@@ -436,7 +436,7 @@ def test_a_function_that_no_single_four_bar_is_determined_by_says_so() -> None:
     assert not found.designs
     same |= {"input": (30, 120), "output": (30, 120)}
     fitted = lw.Task.function("x", fit="minimax", **same).solve()
-    assert fitted.message.startswith("nothing found: no loop through three of the pairs")
+    assert fitted.message.startswith("no result: no loop through three of the pairs")
 
 
 def test_given_pivots_set_the_scale() -> None:

@@ -116,14 +116,14 @@ def test_wishes_of_a_mechanism_driven_in_time_are_tested_in_rows(tmp_path: Path)
     assert found.designs[0].to_dict()["tested_in_rows"] == ["transmission", "clear_of"]
 
 
-def test_designs_that_break_wishes_are_refused_and_the_costliest_is_named() -> None:
+def test_designs_that_break_wishes_are_refused_and_the_most_restrictive_is_named() -> None:
     goals = [{"of": "rocker", "at": [0, 90, 180], "values": [60, 80, 100]}]
     found = lw.Task.improve(
         "four-bar", goals=goals, vary=["A B", "O4 B"], starts=1, wanted={"clear_of": [[60, 60, 9]]}
     ).solve()
     assert not found.delivered
     assert [kind.name for kind in found.defects] == ["OBSTACLE"]
-    assert found.costliest == ("clear_of", 1)
+    assert found.most_restrictive == ("clear_of", 1)
 
 
 def test_a_wished_range_is_the_table_of_the_designs() -> None:
@@ -338,18 +338,18 @@ def test_a_driven_range_that_no_wish_names_costs_no_designs() -> None:
     task: dict[str, Any] = {"goals": [goal], "vary": ["O2 A"], "bounds": {"O2 A": [90, 110]}}
     found = lw.Task.improve("four-bar", starts=3, **task).solve()
     assert [kind.name for kind in found.defects] == ["RANGE"]
-    assert found.costliest is None
+    assert found.most_restrictive is None
     assert advice_of(found) == (
         "The driven range is the table of four-bar. Try more starts, wider bounds, targets nearer "
-        "to its own values, or a part of it: [wanted] input = { from = …, to = … }."
+        "to its present values, or a part of the range: [wanted] input = { from = …, to = … }."
     )
     task["wanted"] = {"input": "turns fully"}
     wished = lw.Task.improve("four-bar", starts=3, **task).solve()
-    assert wished.costliest == ("the driven range", 1)
+    assert wished.most_restrictive == ("the driven range", 1)
 
 
 def test_goals_that_are_missing_are_named_by_their_key() -> None:
-    with pytest.raises(lw.MechanismError, match=r"improve.goals  are missing: say what is wanted"):
+    with pytest.raises(lw.MechanismError, match=r"improve.goals  are missing: add a goal"):
         lw.Task.improve("four-bar").solve()
 
 

@@ -184,7 +184,7 @@ def test_many_points_are_met_within_their_tolerance_or_refused() -> None:
     ]
     assert refused
     assert "tolerance 0.9 mm" in refused[0].defects[0].message
-    assert bound.costliest == ("the tolerances", len(refused))
+    assert bound.most_restrictive == ("the tolerances", len(refused))
 
 
 def test_samples_are_drawn_until_enough_designs_are_sound() -> None:

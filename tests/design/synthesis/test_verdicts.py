@@ -62,7 +62,7 @@ def test_doubts_are_those_of_the_same_mechanism_in_other_units(
         # a few roundings more: the designs were multiplied
         assert (shares[1] <= 3.0 * shares[0]).all()
         assert (shares[1] >= shares[0] / 3.0).all()
-    assert all(np.array_equal(own, there.found[kind]) for kind, own in here.found.items())
+    assert all(np.array_equal(own, there.defects[kind]) for kind, own in here.defects.items())
     assert there.transmission == pytest.approx(here.transmission, abs=1e-6, nan_ok=True)
 
 
@@ -150,7 +150,7 @@ def test_a_turning_crank_passes_positions_in_cyclic_order(
 ) -> None:
     verdicts = judge(_crank_rocker(degrees), Drive.A0, Wishes())
     assert verdicts.loops.is_free[0]
-    assert bool(verdicts.found[DefectKind.ORDER][0]) is not in_order
+    assert bool(verdicts.defects[DefectKind.ORDER][0]) is not in_order
     anyway = judge(_crank_rocker(degrees), Drive.A0, Wishes(ordered=False))
     assert anyway.sound[0]
 
@@ -164,7 +164,7 @@ def test_the_driven_range_turns_or_ends_as_wanted() -> None:
     back = judge(_crank_rocker([100.0, 60.0, 10.0]), Drive.A0, Wishes(range=Range(turn=True)))
     assert back.travel.last[0] - back.travel.first[0] == pytest.approx(-2.0 * np.pi)
     rocker = judge(_crank_rocker([60.0, 90.0, 120.0]), Drive.B0, Wishes(range=Range(turn=True)))
-    assert rocker.found[DefectKind.RANGE][0]
+    assert rocker.defects[DefectKind.RANGE][0]
     small = judge(given, Drive.A0, Wishes(range=Range(start=0.0, stop=np.radians(80))))
     assert small.travel.unreached[0] == 2
     wide = judge(given, Drive.A0, Wishes(range=Range(start=-1.0, stop=2.0)))
@@ -191,17 +191,17 @@ def test_a_dead_point_and_a_change_point_are_decided_for_no_side() -> None:
         error=np.array([1e-14]),
         miss=np.zeros(1),
     )
-    assert judge(given, Drive.A0, Wishes()).found[DefectKind.NOT_PROVED][0]
+    assert judge(given, Drive.A0, Wishes()).defects[DefectKind.NOT_PROVED][0]
     unproved = _crank_rocker([0.0, 50.0])
     unproved.error[:] = np.inf
-    assert judge(unproved, Drive.A0, Wishes()).found[DefectKind.NOT_PROVED][0]
+    assert judge(unproved, Drive.A0, Wishes()).defects[DefectKind.NOT_PROVED][0]
 
 
 def test_lengths_regions_and_transmission_refuse_what_they_exclude() -> None:
     given = _crank_rocker([0.0, 50.0])
 
     def kinds(wishes: Wishes) -> set[DefectKind]:
-        found = judge(given, Drive.A0, wishes).found
+        found = judge(given, Drive.A0, wishes).defects
         return {kind for kind, wrong in found.items() if wrong[0]}
 
     square = np.array([-1 - 1j, 5 - 1j, 5 + 1j, -1 + 1j])
@@ -221,7 +221,7 @@ def test_obstacles_are_met_where_close_positions_meet_them(kind: LoopKind, drive
     verdicts = judge(given, drive, Wishes(transmission=np.radians(10)))
     sound = np.flatnonzero(verdicts.sound)
     circle = np.array([[0.9, 1.1, 0.25]])
-    met = judge(given, drive, Wishes(obstacles=circle)).found[DefectKind.OBSTACLE][sound]
+    met = judge(given, drive, Wishes(obstacles=circle)).defects[DefectKind.OBSTACLE][sound]
     some, loops = given.take(sound), verdicts.loops.take(sound)
     first, last = verdicts.travel.first[sound], verdicts.travel.last[sound]
     places = first[:, None] + (last - first)[:, None] * np.linspace(0.0, 1.0, 1500)

@@ -83,7 +83,7 @@ def test_changes_together_are_messages_inside_a_message() -> None:
         ),
         (
             '{"kind": "undo", "kind": "redo"}',
-            '"kind" is given twice in one object: give it once',
+            '"kind" occurs twice in one object: send it once',
         ),
         (
             sent(kind="set_number", name="a" * 1001, value=1),

@@ -129,10 +129,10 @@ def test_a_half_drawn_task_an_unsound_one_and_a_lost_server_say_so(
     for left in (4, 3, 2, 1):
         page.get_by_role("button", name="Remove position 2").click()
         rows.nth(left).wait_for(state="detached")
-    page.locator(".lw-motion-notice", has_text="one position is given").wait_for()
+    page.locator(".lw-motion-notice", has_text="is only one").wait_for()
     assert page.locator(".lw-t-position[data-knob=false]").count() == 1
     page.reload()
-    page.locator(".lw-motion-notice", has_text="one position is given").wait_for()
+    page.locator(".lw-motion-notice", has_text="is only one").wait_for()
     x, y = page.locator(".lw-t-position[data-knob=false]").evaluate(_CENTRE)
     page.mouse.move(x, y)
     page.mouse.down()

@@ -110,7 +110,7 @@ def test_a_broken_lock_is_refused(folder: Path, text: str) -> None:
 
 def test_a_lock_of_unknown_files_is_refused(folder: Path) -> None:
     (folder / "lock.json").write_text('{"scipy": {"file": "x", "sha256": "y"}}')
-    with pytest.raises(InputError, match=r'"scipy" is none of pyodide\.asm\.js'):
+    with pytest.raises(InputError, match=r'"scipy" is not one of pyodide\.asm\.js'):
         pyodide_files(folder)
 
 

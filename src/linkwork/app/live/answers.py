@@ -85,7 +85,7 @@ class GivenUpError(Exception):
 
 @dataclass(frozen=True, kw_only=True)
 class About:
-    """What is asked about: a text with its mechanism, its motion if it has one, and its file.
+    """The subject of requests: a text with its mechanism, its motion if it has one, and its file.
 
     ``progress`` receives the finished fraction and may raise :class:`GivenUpError`.
     """
@@ -125,7 +125,7 @@ def _(request: ListQuantities, about: About) -> Events:
         return [QuantitiesListed(quantities=())]
     known = motion.quantities
     listed = list(known.listed(timed=motion.speed is not None))
-    own = {**known.own, **known.derived, **known.evidence}
+    quantities = {**known.own, **known.derived, **known.evidence}
     return [
         QuantitiesListed(
             quantities=tuple(
@@ -133,10 +133,10 @@ def _(request: ListQuantities, about: About) -> Events:
                     name=line.name,
                     unit=line.unit,
                     about=line.about,
-                    derivatives=_derivatives(asked.group, asked.needs),
+                    derivatives=_derivatives(quantity.group, quantity.needs),
                 )
                 for line in listed
-                if (asked := own.get(line.name)) is not None
+                if (quantity := quantities.get(line.name)) is not None
             ),
         )
     ]

@@ -45,7 +45,7 @@ class Bench:
     solve : callable
         Solves a task.
     suggesting : callable, optional
-        Imports what suggests designs for a task; without it there is the search alone.
+        Imports the module that suggests designs for a task; without it only the search does.
     start : bool
         Offer the start page.
     """
@@ -94,8 +94,8 @@ class Bench:
         InputError
             If a copy cannot be written.
         """
-        found = [b.keep_unsaved() for b in (self.current, self._behind) if b is not None]
-        return tuple(path for path in found if path is not None)
+        paths = [b.keep_unsaved() for b in (self.current, self._behind) if b is not None]
+        return tuple(path for path in paths if path is not None)
 
     def handle(self, request: Request) -> Events:
         """Process a request and send its events; invalid requests are answered, not raised."""
@@ -135,9 +135,9 @@ class Bench:
         # with all formats of other programs: most visitors do without them
         from linkwork.app.live.mechanism_file import read_visitor_file
 
-        found = read_visitor_file(request)  # a wrong file changes nothing
+        visitor = read_visitor_file(request)  # a wrong file changes nothing
         self._check_saved(request.discard)
-        return [*self._open(found.file), found.opened]
+        return [*self._open(visitor.file), visitor.opened]
 
     def _design(self, index: int) -> Events:
         task = self.current

@@ -51,7 +51,7 @@ class BrowserDesk:  # noqa: V102  # the page in a browser makes it
         Lets the browser deliver messages during long work. Without it a newer change cannot cancel
         a cycle that is being solved.
     suggesting : callable, optional
-        Imports what suggests designs for a task.
+        Imports the module that suggests designs for a task.
     """
 
     def __init__(
@@ -73,7 +73,7 @@ class BrowserDesk:  # noqa: V102  # the page in a browser makes it
         self._looked = 0.0
 
     def begin(self, fragment: str, name: str = "", saved: str = "", text: str = "") -> None:
-        """Open what the page kept when it was last closed, or else what its address names.
+        """Open the file that the page kept when it was last closed, else the one of its address.
 
         Parameters
         ----------

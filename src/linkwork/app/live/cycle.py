@@ -46,15 +46,15 @@ class MotionPicture:
         equations: Sequence[tuple[str, str]] = (),
         loops: Loops | None = None,
         *,
-        asked: Sequence[str] = (),
+        requested: Sequence[str] = (),
         brief: bool = False,
         rates: bool = True,
     ) -> PageData | None:
         """The data of a page; ``None`` without positions or points.
 
-        ``asked``: further quantities by name. ``brief``: seven digits, no vectors and no numbers of
-        the motion, for a picture that is replaced soon; vectors between points are kept. ``rates``:
-        with rates of points.
+        ``requested``: further quantities by name. ``brief``: seven digits, no vectors and no
+        numbers of the motion, for a picture that is replaced soon; vectors between points are kept.
+        ``rates``: with rates of points.
         """
         if not motion.found.any() or not motion.points:
             return None
@@ -69,7 +69,7 @@ class MotionPicture:
             equations,
             loops=None if brief else loops,
             pack=shortened if brief else unpressed,
-            asked=asked,
+            requested=requested,
             brief=brief,
             rates=rates,
         )
@@ -131,7 +131,7 @@ class Cycle:
         self.motion: Motion | None = None
         self.owed = False
         self._picture, self._sheet = MotionPicture(), SetSheet(width=0.0)
-        self._paths_only = False  # whether the last motion was told without its parts and columns
+        self._paths_only = False  # whether the last motion was sent without its parts and columns
         self._kept: Kept = {}  # names and arrows of the sketch stay in their places during a drag
 
     def take(self, subject: Subject) -> None:
@@ -159,15 +159,15 @@ class Cycle:
             self.owed = True
             return []
         self.motion, self.owed = motion, False
-        found = motion_found(motion, live=live, message=message)
+        event = motion_found(motion, live=live, message=message)
         sketch = self._sketch(live)
         # in an edited sketch nothing else of the motion is seen
         self._paths_only = live and bool(sketch)
         if self._paths_only:
             page = paths_on(sketch[0].page, motion) if motion.found.any() else None
-            events: Events = [*sketch, replace(found, page=page)]
+            events: Events = [*sketch, replace(event, page=page)]
         else:
-            events = [*sketch, self._pictured(found, motion)]
+            events = [*sketch, self._pictured(event, motion)]
         if not motion.found.any() and motion.limits:  # in addition to the rows of the table
             events += answered(SolveAt(at={}), mechanism)
         elif all(status is Status.NO_START for status in motion.status):
@@ -198,7 +198,7 @@ class Cycle:
         return self._solution
 
     def simulate(self, request: Simulate) -> Events:
-        """The simulation that is asked for, or why there is none.
+        """The requested simulation, or why there is none.
 
         Raises
         ------
@@ -222,11 +222,11 @@ class Cycle:
         return [self._simulation(self.simulated, names)]
 
     def _simulation(self, motion: Motion, names: tuple[str, ...] = ()) -> SimulationFound:
-        page = self._in_time.page(motion, asked=names)
+        page = self._in_time.page(motion, requested=names)
         return simulation_found(motion, page, self.subject)
 
     def driven_motion(self, *, proved: bool) -> Motion | None:
-        """The latest motion of a mechanism with inputs, or, if asked, its ``proved`` motion.
+        """The latest motion of a mechanism with inputs, or its ``proved`` motion on request.
 
         Raises
         ------
@@ -262,7 +262,7 @@ class Cycle:
         return [] if page is None else [SketchShown(page=page)]
 
     def _pictured(self, event: Event, motion: Motion) -> Event:
-        """A found motion with the data of its page."""
+        """A motion with the data of its page."""
         if not isinstance(event, MotionFound):
             return event
         mechanism, shown = self.subject.mechanism, self._shown
@@ -271,7 +271,7 @@ class Cycle:
             motion,
             equations,
             partial(moving_loops, mechanism.model),
-            asked=shown,
+            requested=shown,
             brief=event.live,
             rates=self.rates or not event.live,
         )

@@ -121,8 +121,8 @@ def draw_curve(sheet: DrawnSheet, pin: Picked, *picks: Picked) -> None:
     places = [places[0], *distinct]
     origin = sheet.links[on][0] if sheet.links[on] else sheet.point(places[0], on)
     turn = 0.0 if on == GROUND else sheet.draft.sketched_angle(on)
-    own = [(place - sheet.place(origin)) * cmath.exp(-1j * turn) for place in places]
-    through = tuple(f"{short(z.real)}, {short(z.imag)}" for z in own)
+    local = [(place - sheet.place(origin)) * cmath.exp(-1j * turn) for place in places]
+    through = tuple(f"{short(z.real)}, {short(z.imag)}" for z in local)
     sheet.finish(name=sheet.name("u"), point=point, on=on, origin=origin, through=through)
 
 
@@ -339,7 +339,7 @@ def draw_weld(sheet: DrawnSheet, first: Picked, second: Picked) -> None:
 # The index of drawn parts, but for those with other tools.
 
 
-#: By table of the file: what a person picks, and how the part is drawn from it.
+#: By table of the file: the picks, and the function that draws the part from them.
 _TOOLS: Mapping[str, tuple[tuple[Pick, ...], Callable[..., None]]] = {
     "belts": (BELT_PICKS, draw_belt),
     "cams": (CAM_PICKS, draw_cam),
@@ -367,14 +367,14 @@ def edits_of_drawing(drawn: DrawPart, before: Before) -> tuple[Edit, ...]:
     Raises
     ------
     InputError, UnknownNameError
-        If what was picked does not make such a part; with the reason.
+        If the picks do not make such a part; with the reason.
     """
-    wanted, count = picks_of(drawn.table), len(drawn.picks)
-    if not wanted:
+    needed, count = picks_of(drawn.table), len(drawn.picks)
+    if not needed:
         tables = [table for table in PARTS if picks_of(table)]
         raise InputError(f"this part cannot be drawn {choices('parts', tables, drawn.table)}")
-    if not (count == len(wanted) or (wanted[-1].repeated and count > len(wanted))):
-        raise InputError(f"this part needs {len(wanted)} picks, got {count}")
+    if not (count == len(needed) or (needed[-1].repeated and count > len(needed))):
+        raise InputError(f"this part needs {len(needed)} picks, got {count}")
     if not drawn.span > 0:
         raise InputError(f"span: must be positive, got {drawn.span:g}")
     if not isinstance(before.description, Draft):

@@ -1,4 +1,4 @@
-"""A draft to which what is picked in the drawing adds points, links and parts."""
+"""A draft to which picks in the drawing add points, links and parts."""
 
 from __future__ import annotations
 
@@ -52,17 +52,17 @@ class DrawnSheet:
 
     def on(self, point: str) -> list[str]:
         """The links at a point, ground first."""
-        found = [link for link, points in self.links.items() if point in points]
-        return sorted(found, key=lambda link: link != GROUND)
+        links = [link for link, points in self.links.items() if point in points]
+        return sorted(links, key=lambda link: link != GROUND)
 
     def name(self, base: str) -> str:
         """A free name: gear1, gear2, …"""
         return self._free(f"{base}{k}" for k in range(1, len(self._taken) + 2))
 
     def _free(self, names: Iterator[str]) -> str:
-        found = next(name for name in names if canonical(name) not in self._taken)
-        self._taken.add(canonical(found))
-        return found
+        free = next(name for name in names if canonical(name) not in self._taken)
+        self._taken.add(canonical(free))
+        return free
 
     # What is added
 
@@ -101,26 +101,26 @@ class DrawnSheet:
         """The point that was picked, as it is spelled in the file; "" if none was."""
         if not pick.point:
             return ""
-        own = find_spelling(pick.point, self.draft.points)
-        if own not in self.draft.points:
+        name = find_spelling(pick.point, self.draft.points)
+        if name not in self.draft.points:
             known = choices("points", self.draft.points, pick.point)
             raise InputError(f'there is no point "{pick.point}" {known}')
-        return own
+        return name
 
     def body(self, pick: Picked) -> str:
         """The link that was picked, itself or by one of its points; a fixed point is the ground."""
         if pick.link:
-            own = find_spelling(pick.link, self.links)
-            if own not in self.links:
+            name = find_spelling(pick.link, self.links)
+            if name not in self.links:
                 raise InputError(
                     f'there is no link "{pick.link}" {choices("links", self.links, pick.link)}'
                 )
-            return own
+            return name
         point = self.picked(pick)
-        found = self.on(point) if point else [GROUND]
-        if not found or (len(found) > 1 and found[0] != GROUND):
-            raise InputError(f"{point} is on {_listed(found)}: click one link beside its pins")
-        return found[0]
+        links = self.on(point) if point else [GROUND]
+        if not links or (len(links) > 1 and links[0] != GROUND):
+            raise InputError(f"{point} is on {_listed(links)}: click one link beside its pins")
+        return links[0]
 
     def end(self, pick: Picked, *links: str) -> str:
         """The point that was picked, or a new one on the link there, otherwise on ``links``."""
@@ -172,37 +172,38 @@ class DrawnSheet:
         self, picks: tuple[Picked, Picked], base: str
     ) -> tuple[tuple[str, str], tuple[str, str], str]:
         """Two wheels, their centres and their arm."""
-        given = [self.body(pick) if pick.link else "" for pick in picks]
+        bodies = [self.body(pick) if pick.link else "" for pick in picks]
         points = [self.picked(pick) for pick in picks]
-        arm = self._arm(given, points)
+        arm = self._arm(bodies, points)
         centers = []
-        for link, point, pick in zip(given, points, picks, strict=True):
+        for link, point, pick in zip(bodies, points, picks, strict=True):
             shared = next((p for p in self.links.get(link, ()) if p in self.links[arm]), "")
             place = complex(pick.x, pick.y)
             centers.append(point or shared or self.point(place, arm))
-        if not given[0]:
-            given[0] = self.wheel_at(centers[0]) or self.link(base, centers[0])
-        if not given[1]:
-            given[1] = self.wheel_at(centers[1], given[0]) or self.link(base, centers[1])
+        if not bodies[0]:
+            bodies[0] = self.wheel_at(centers[0]) or self.link(base, centers[0])
+        if not bodies[1]:
+            bodies[1] = self.wheel_at(centers[1], bodies[0]) or self.link(base, centers[1])
         first, second = centers
         self.distinct(self.place(first), self.place(second), "the two centres")
-        return (given[0], given[1]), (first, second), arm
+        return (bodies[0], bodies[1]), (first, second), arm
 
-    def _arm(self, given: list[str], points: list[str]) -> str:
+    def _arm(self, links: list[str], points: list[str]) -> str:
         """The link that carries both centres, ground first; new centres can be on any link."""
-        arms = sorted((link for link in self.links if link not in given), key=lambda k: k != GROUND)
-        if not any((*given, *points)):
+        arms = sorted((link for link in self.links if link not in links), key=lambda k: k != GROUND)
+        if not any((*links, *points)):
             return GROUND
         for arm in arms:
-            own = set(self.links[arm])
+            on_arm = set(self.links[arm])
             held = [
-                bool(own & set(self.links[link])) if link else not point or point in own
-                for link, point in zip(given, points, strict=True)
+                bool(on_arm & set(self.links[link])) if link else not point or point in on_arm
+                for link, point in zip(links, points, strict=True)
             ]
-            if all(held) and not (arm in self.turning and len(own) == 1):
+            if all(held) and not (arm in self.turning and len(on_arm) == 1):
                 return arm
+        names = [body or point for body, point in zip(links, points, strict=True)]
         raise InputError(
-            f"no link carries both {_listed([a or b for a, b in zip(given, points, strict=True)])}:"
+            f"no link carries both {_listed(names)}:"
             " draw the arm between the centres first, or fix both centres to the ground"
         )
 

@@ -95,8 +95,8 @@ def _(edit: MovePoint, text: TextEdits, before: Before) -> Followed:
 @applied.register
 def _(edit: MovePoints, text: TextEdits, before: Before) -> Followed:
     linkage = _sketched(before)
-    wanted = {_known_point(linkage, name): complex(*place) for name, place in edit.places.items()}
-    places = held_places(linkage, before, wanted, edit.keep)
+    targets = {_known_point(linkage, name): complex(*place) for name, place in edit.places.items()}
+    places = held_places(linkage, before, targets, edit.keep)
     followed, stayed = move_points(text, before, linkage, places, keep=edit.keep)
     return Followed(followed=followed, stayed=stayed)
 
@@ -110,12 +110,12 @@ def _sketched(before: Before) -> Draft:
 
 
 def _known_point(linkage: Draft, name: str) -> str:
-    own = find_spelling(name, linkage.points)
-    if own not in linkage.points:
+    point = find_spelling(name, linkage.points)
+    if point not in linkage.points:
         raise UnknownNameError(
             f'there is no point "{name}" {choices("points", linkage.points, name)}'
         )
-    return own
+    return point
 
 
 @applied.register
@@ -147,9 +147,9 @@ def _(edit: AddLink, text: TextEdits, before: Before) -> Followed:
 @applied.register
 def _(edit: SetGround, text: TextEdits, before: Before) -> Followed:
     fixed = points_of(text, GROUND) if text.has(("links", GROUND)) else []
-    wanted = {canonical(name): check_point(text, name) for name in edit.points}
-    left = [point for point in fixed if canonical(point) not in wanted]
-    if on := [*left, *wanted.values()] if edit.on else left:
+    targets = {canonical(name): check_point(text, name) for name in edit.points}
+    left = [point for point in fixed if canonical(point) not in targets]
+    if on := [*left, *targets.values()] if edit.on else left:
         text.put(("links", GROUND), on)
     elif fixed:
         text.remove(("links", GROUND))
@@ -364,7 +364,7 @@ def edit_title(edit: Edit) -> str:
 
 Refusing = Callable[[Problem], bool]
 
-#: Edits that change numbers or choices, not what there is.
+#: Edits that change numbers or choices, not parts.
 _OF_NUMBERS = (
     SetNumber, SetPart, SetEntry, MovePoint, MovePoints, SetInput,
     ChooseConfiguration, TracePoint, ChangeUnits, AddOutput,

@@ -1,4 +1,4 @@
-"""Masses of links as they are typed, and what is removed with links, points and parts."""
+"""Masses and loads as they are typed, and their removal with links, points and parts."""
 
 from __future__ import annotations
 
@@ -26,16 +26,16 @@ def masses_shown(description: Description) -> Iterator[MassShown]:
     for link in description.carried:
         if link == GROUND:
             continue
-        own = description.masses.get(link)
-        center = () if own is None or own.center is None else own.center
+        mass = description.masses.get(link)
+        center = () if mass is None or mass.center is None else mass.center
         x, y = map(str, center) if len(center) == 2 else ("", "")
         yield MassShown(
             link=link,
-            mass="" if own is None else str(own.mass),
+            mass="" if mass is None else str(mass.mass),
             x=x,
             y=y,
-            inertia="" if own is None or own.shape is not None else str(own.inertia),
-            rod=own is not None and own.shape is not None,
+            inertia="" if mass is None or mass.shape is not None else str(mass.inertia),
+            rod=mass is not None and mass.shape is not None,
         )
 
 
@@ -45,7 +45,7 @@ def put_mass(edit: SetMass, text: TextEdits) -> None:
     Raises
     ------
     UnknownNameError
-        If there is no such link.
+        If the link does not exist.
     """
     links = {canonical(link): link for link in text.keys(("links",))}
     if canonical(edit.link) not in links:
@@ -74,8 +74,8 @@ def put_mass(edit: SetMass, text: TextEdits) -> None:
     for key in text.keys(("masses", before)):
         if key not in entry:
             text.remove(("masses", before, key))
-    for key, own in entry.items():
-        text.put(("masses", before, key), own)
+    for key, number in entry.items():
+        text.put(("masses", before, key), number)
 
 
 def _plain(number: float | str) -> float | str:
@@ -119,7 +119,7 @@ _KEYS: dict[str, tuple[Key, ...]] = {
 FORMS: tuple[PaletteForm, ...] = tuple(
     PaletteForm(table=table, title=title, doc=doc, fields=tuple(map(field_of, _KEYS[table])))
     for table, title, doc in (
-        ("gravity", "Gravity", "Size and direction; downwards unless an angle is given"),
+        ("gravity", "Gravity", "Size and direction; downwards without an angle"),
         ("friction", "Friction", "Of pins and guides, in forces; a pin needs its radius"),
         ("motor", "Motor", "What turns an input in simulations, and a flywheel on it"),
         ("stops", "Stops", "Bounds of a quantity in simulations"),
@@ -143,25 +143,25 @@ def entries_shown(description: Description) -> Iterator[EntryShown]:
         yield _shown("stops", "", None)
 
 
-def _shown(table: str, of: str, own: object, takes: Iterable[str] = ()) -> EntryShown:
+def _shown(table: str, of: str, shown: object, takes: Iterable[str] = ()) -> EntryShown:
     keys = _KEYS[table]
-    typed = _typed(keys, own)
+    typed = _typed(keys, shown)
     return EntryShown(
         table=table,
         of=of,
         takes=tuple(takes) or tuple(key.name for key in keys),
-        there=own is not None,
+        there=shown is not None,
         typed=typed,
     )
 
 
-def _typed(keys: Iterable[Key], own: object) -> dict[str, Typed]:
-    found: dict[str, Typed] = {}
+def _typed(keys: Iterable[Key], shown: object) -> dict[str, Typed]:
+    typed: dict[str, Typed] = {}
     for key in keys:
-        entry = None if own is None else getattr(own, key.attribute, None)
+        entry = None if shown is None else getattr(shown, key.attribute, None)
         if entry is not None and entry != () and not (key.name == "restitution" and entry == 0):
-            found[key.name] = shown_entry(key, entry)
-    return found
+            typed[key.name] = shown_entry(key, entry)
+    return typed
 
 
 def _motor(k: int, driven: Input) -> EntryShown:
@@ -188,7 +188,7 @@ def put_force_entry(edit: SetEntry, text: TextEdits, description: Description) -
     Raises
     ------
     InputError, UnknownNameError
-        If there is no such table, joint, input or stop, or an entry does not match its key.
+        If the table, joint, input or stop does not exist, or an entry does not match its key.
     """
     if edit.table not in _KEYS:
         raise UnknownNameError(
@@ -198,28 +198,28 @@ def put_force_entry(edit: SetEntry, text: TextEdits, description: Description) -
     k = _input(edit.of, description) if edit.table == "motor" else -1
     row = text.get(("input", k)) if k >= 0 else {}
     units = TypedUnits.of(description)
-    given = typed_entries(f"[{edit.table}]", keys, edit.typed, units, row)
+    typed = typed_entries(f"[{edit.table}]", keys, edit.typed, units, row)
     match edit.table:
         case "gravity":
-            _write(("gravity",), keys, given or {"size": Gravity().size}, edit.remove, text)
+            _write(("gravity",), keys, typed or {"size": Gravity().size}, edit.remove, text)
         case "friction":
-            _write(("friction", _joint(edit.of, description)), keys, given, edit.remove, text)
+            _write(("friction", _joint(edit.of, description)), keys, typed, edit.remove, text)
         case "motor":
-            _write_motor(k, given, edit.remove, text)
+            _write_motor(k, typed, edit.remove, text)
         case _:
-            _write_stop(edit, given, text)
+            _write_stop(edit, typed, text)
 
 
 def _joint(name: str, description: Description) -> str:
     names = (
-        [own for own, _ in _joints(description)] if isinstance(description, JoinedBodies) else []
+        [one for one, _ in _joints(description)] if isinstance(description, JoinedBodies) else []
     )
-    own = find_spelling(name, names)
-    if own not in names:
+    one = find_spelling(name, names)
+    if one not in names:
         raise UnknownNameError(
             f'"{name}" is no joint with friction {choices("joints", names, name)}'
         )
-    return own
+    return one
 
 
 def _input(name: str, description: Description) -> int:
@@ -230,44 +230,44 @@ def _input(name: str, description: Description) -> int:
 
 
 def _write(
-    path: KeyPath, keys: Iterable[Key], given: Mapping[str, object], remove: bool, text: TextEdits
+    path: KeyPath, keys: Iterable[Key], entries: Mapping[str, object], remove: bool, text: TextEdits
 ) -> None:
     """Write a table key by key, so that its row keeps its place, form and comments."""
-    if remove or not given:
+    if remove or not entries:
         if text.has(path):
             text.remove(path)
         return
     if len(path) > 1 and not text.has(path):
-        text.put(path, dict(given))
+        text.put(path, dict(entries))
         return
     for key in keys:
-        own = (*path, key.name)
-        if key.name in given:
-            if not text.has(own) or text.get(own) != given[key.name]:
-                text.put(own, given[key.name])
-        elif text.has(own):
-            text.remove(own)
+        key_path = (*path, key.name)
+        if key.name in entries:
+            if not text.has(key_path) or text.get(key_path) != entries[key.name]:
+                text.put(key_path, entries[key.name])
+        elif text.has(key_path):
+            text.remove(key_path)
 
 
-def _write_motor(k: int, given: Mapping[str, object], remove: bool, text: TextEdits) -> None:
+def _write_motor(k: int, entries: Mapping[str, object], remove: bool, text: TextEdits) -> None:
     here: KeyPath = ("input", k)
-    motor = {name: entry for name, entry in given.items() if name != "inertia"}
+    motor = {name: entry for name, entry in entries.items() if name != "inertia"}
     _write((*here, "motor"), MOTOR_KEYS, motor, remove, text)
-    if "inertia" in given and not remove:
-        text.put((*here, "inertia"), given["inertia"])
+    if "inertia" in entries and not remove:
+        text.put((*here, "inertia"), entries["inertia"])
     elif text.has((*here, "inertia")):
         text.remove((*here, "inertia"))
 
 
-def _write_stop(edit: SetEntry, given: Mapping[str, object], text: TextEdits) -> None:
+def _write_stop(edit: SetEntry, entries: Mapping[str, object], text: TextEdits) -> None:
     count = len(list(text.entries("stops")))
     if not edit.of:
-        if given and not edit.remove:
-            text.append("stops", given)
+        if entries and not edit.remove:
+            text.append("stops", entries)
         return
     if edit.of not in map(str, range(count)):
         raise UnknownNameError(f'there is no stop number "{edit.of}": the file has {count}')
-    _write(("stops", int(edit.of)), STOP_KEYS, given, edit.remove, text)
+    _write(("stops", int(edit.of)), STOP_KEYS, entries, edit.remove, text)
 
 
 def entry_title(edit: SetEntry) -> str:

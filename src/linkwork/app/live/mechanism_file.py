@@ -29,7 +29,7 @@ def new_file(example: str = "", text: str | None = None) -> MechanismFile:
     Raises
     ------
     UnknownNameError
-        If the library has no such mechanism.
+        If the library does not have the mechanism.
     """
     stem = example or "untitled"
     if text is None:
@@ -61,8 +61,8 @@ class MechanismFile:
     path : str or Path
         A symbolic link is resolved once, here.
     begun : str, optional
-        The text to begin with where there is no such file, or an empty one; it is written when it
-        is saved.
+        The text to begin with if the file does not exist or is empty; it is written when it is
+        saved.
 
     Raises
     ------
@@ -137,7 +137,7 @@ class MechanismFile:
                 "or save again and overwrite it"
             )
         save_text(text, self._path)
-        self._begun = None  # from now on the file is what there is
+        self._begun = None  # from now on the file is current
         # changes by this program are not reported
         self._stamp = self._stamp_now()
         self.accept(text)
@@ -168,11 +168,11 @@ class MechanismFile:
 
     def _stamp_now(self) -> tuple[int, int, int] | None:
         try:
-            found = self._path.stat()
+            stat = self._path.stat()
         except OSError:
             return None
         # the inode changes when an editor replaces the file, even within one tick of the clock
-        return found.st_mtime_ns, found.st_size, found.st_ino
+        return stat.st_mtime_ns, stat.st_size, stat.st_ino
 
 
 def _digest(data: bytes) -> bytes:
@@ -190,7 +190,7 @@ _SUFFIX = ".toml"
 
 @dataclass(frozen=True, kw_only=True)
 class VisitorFile:
-    """The text to open, under a name that no file has, and what the visitor is told about it."""
+    """The text to open, under a name that no file has, and the event that announces it."""
 
     file: MechanismFile
     opened: FileOpened
@@ -215,8 +215,8 @@ def read_visitor_file(request: OpenFile) -> VisitorFile:
     if name.lower().endswith(_SUFFIX):
         text = text_of(data, name)
         if "format" not in data_of(text, name):
-            told = "is not a file of Linkwork: these begin with format = 1"
-            raise MechanismFileError([Problem(key=(), message=told)], name)
+            message = "is not a file of Linkwork: these begin with format = 1"
+            raise MechanismFileError([Problem(key=(), message=message)], name)
         opened = FileOpened(source=name, format="", carried={}, renamed={}, left_out=())
     else:
         reading = read_foreign(data, name)

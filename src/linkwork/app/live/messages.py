@@ -68,16 +68,16 @@ def decoded(text: str | bytes) -> tuple[Request, int | None]:
 
 def encoded(event: Event, answers: int | None = None) -> str:
     """An event as JSON; ``answers`` is the id of its request."""
-    fields = {"kind": kind_of(type(event)), "answers": answers, **_own_fields(event)}
+    fields = {"kind": kind_of(type(event)), "answers": answers, **_message_fields(event)}
     # in ASCII: a browser keeps other texts in twice the memory
-    return json.dumps(fields, allow_nan=False, separators=(",", ":"), default=_own_fields)
+    return json.dumps(fields, allow_nan=False, separators=(",", ":"), default=_message_fields)
 
 
-def _own_fields(message: Any) -> dict[str, Any]:
+def _message_fields(message: Any) -> dict[str, Any]:
     """The fields of a dataclass, not copied: a cycle has thousands of numbers."""
-    own = vars(message)
+    fields = vars(message)
     # a remedy has the requests that the page sends back
-    return {"kind": kind_of(type(message)), **own} if type(message) in _REQUESTS else own
+    return {"kind": kind_of(type(message)), **fields} if type(message) in _REQUESTS else fields
 
 
 def _refuse(message: str) -> NoReturn:
@@ -100,12 +100,12 @@ def _object(text: str | bytes) -> dict[str, Any]:
 
 
 def _unique(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
-    found = dict(pairs)
-    if len(found) < len(pairs):
+    entries = dict(pairs)
+    if len(entries) < len(pairs):
         names = [name for name, _ in pairs]
         twice = next(name for name in names if names.count(name) > 1)
-        _refuse(f"{_shown(twice)} is given twice in one object: give it once")
-    return found
+        _refuse(f"{_shown(twice)} occurs twice in one object: send it once")
+    return entries
 
 
 def _no_number(text: str) -> NoReturn:
@@ -284,14 +284,15 @@ def typescript_types() -> str:
     """
     parts = [_HEAD]
     for message in REQUESTS:
-        own = [f'kind: "{kind_of(message)}"', "id?: number"]
-        parts.append(_interface(message, own, asked=True))
+        head = [f'kind: "{kind_of(message)}"', "id?: number"]
+        parts.append(_interface(message, head, is_request=True))
     for message in EVENTS:
-        own = [f'kind: "{kind_of(message)}"', "answers: number | null"]
-        parts.append(_interface(message, own, asked=False))
-    asked = dict.fromkeys(_parts_of(REQUESTS))
-    parts += [_interface(part, [], asked=True) for part in asked]
-    parts += [_interface(part, [], asked=False) for part in _parts_of(EVENTS) if part not in asked]
+        head = [f'kind: "{kind_of(message)}"', "answers: number | null"]
+        parts.append(_interface(message, head, is_request=False))
+    sent = dict.fromkeys(_parts_of(REQUESTS))
+    received = (part for part in _parts_of(EVENTS) if part not in sent)
+    parts += [_interface(part, [], is_request=True) for part in sent]
+    parts += [_interface(part, [], is_request=False) for part in received]
     unions = (("Edit", EDITS), ("Request", REQUESTS), ("Event", EVENTS))
     # spelled differently from the browser's own Event and Request
     parts += [
@@ -300,11 +301,11 @@ def typescript_types() -> str:
     return "\n".join(parts)
 
 
-def _interface(message: type, own: list[str], *, asked: bool) -> str:
+def _interface(message: type, head: list[str], *, is_request: bool) -> str:
     types = typing.get_type_hints(message)
-    lines = [*own]
+    lines = [*head]
     for field in dataclasses.fields(message):
-        optional = asked and field.default is not dataclasses.MISSING
+        optional = is_request and field.default is not dataclasses.MISSING
         lines.append(f"{field.name}{'?' if optional else ''}: {_type(types[field.name])}")
     body = "".join(f"  {line};\n" for line in lines)
     return f"export interface {message.__name__} {{\n{body}}}\n"
@@ -336,16 +337,16 @@ def _type(kind: Any) -> str:
 
 def _parts_of(messages: tuple[type, ...]) -> Iterator[type]:
     """The dataclasses used in messages, without duplicates."""
-    found: dict[type, None] = {}
+    kinds: dict[type, None] = {}
 
     def look(kind: Any) -> None:
-        if kind is PageData:  # defined in its own module
+        if kind is PageData:  # defined in the module of the kind
             return
         if dataclasses.is_dataclass(kind) and isinstance(kind, type):
             if kind in REQUESTS and kind not in messages:
                 return
             if kind not in messages:
-                found[kind] = None
+                kinds[kind] = None
             for inner in typing.get_type_hints(kind).values():
                 look(inner)
         for part in typing.get_args(kind):
@@ -353,4 +354,4 @@ def _parts_of(messages: tuple[type, ...]) -> Iterator[type]:
 
     for message in messages:
         look(message)
-    yield from found
+    yield from kinds

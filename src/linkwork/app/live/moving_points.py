@@ -18,9 +18,9 @@ from linkwork.core.textfile.text_edits import TextEdits
 def check_point(text: TextEdits, name: str) -> str:
     """A point as it is spelled in the text; an error if there is none."""
     known = text.keys(("points",))
-    for own in known:
-        if canonical(own) == canonical(name):
-            return own
+    for spelled in known:
+        if canonical(spelled) == canonical(name):
+            return spelled
     raise UnknownNameError(f'there is no point "{name}" {choices("points", known, name)}')
 
 
@@ -135,32 +135,32 @@ def move_points(
 
 
 def held_places(
-    linkage: Draft, before: Before, wanted: Mapping[str, complex], keep: Collection[str]
+    linkage: Draft, before: Before, targets: Mapping[str, complex], keep: Collection[str]
 ) -> Mapping[str, complex]:
-    """The places nearest to those wanted at which the lengths in ``keep`` stay."""
+    """The places nearest to ``targets`` at which the lengths in ``keep`` stay."""
     # a lock may outlive its points
     kept = [key for key in keep if set(key.split()) <= linkage.points.keys()]
-    held = list(_held_lengths(before, wanted, kept))
+    held = list(_held_lengths(before, targets, kept))
     if not held:
-        return wanted
-    if len(wanted) > 1 or len(held) > 2:
-        return {point: before.place(point) for point in wanted}
-    ((point, place),) = wanted.items()
+        return targets
+    if len(targets) > 1 or len(held) > 2:
+        return {point: before.place(point) for point in targets}
+    ((point, place),) = targets.items()
     here = before.place(point)
     (centre, radius), *more = [(before.place(other), length) for other, length in held]
     if not more:
         away = place - centre
         return {point: centre + radius * away / abs(away) if away else here}
-    found = _crossings(centre, radius, *more[0]) or [here]
-    return {point: min(found, key=lambda crossing: abs(crossing - here))}
+    places = _crossings(centre, radius, *more[0]) or [here]
+    return {point: min(places, key=lambda crossing: abs(crossing - here))}
 
 
 def _held_lengths(
-    before: Before, wanted: Mapping[str, complex], keep: Collection[str]
+    before: Before, targets: Mapping[str, complex], keep: Collection[str]
 ) -> Iterator[tuple[str, float]]:
     """The other end of every kept length at a moved point, and the length."""
     for one, other in (pair for key in keep for pair in permutations(key.split(), 2)):
-        if one in wanted and other not in wanted:
+        if one in targets and other not in targets:
             yield other, abs(before.place(one) - before.place(other))
 
 
@@ -178,7 +178,7 @@ def _crossings(centre: complex, radius: float, other: complex, second: float) ->
 
 
 def _is_cut(names: Collection[str], places: Mapping[str, complex]) -> bool:
-    """Whether some of the points move and others do not."""
+    """Whether only some of the points move."""
     return 0 < sum(name in places for name in names) < len(names)
 
 
@@ -265,12 +265,12 @@ def _partner(radius: float, distance: float) -> float:
 
 def pulley_radii(draft: Draft, wheels: tuple[str, str], distance: float, sizes: _Pair) -> _Pair:
     """Radii of two pulleys [length]: as drawn, as they are, or a quarter of the distance."""
-    found = [
+    radii = [
         size if size > 0 else _radius(draft, wheel)
         for size, wheel in zip(sizes, wheels, strict=True)
     ]
-    usual = found[0] or found[1] or distance / 4
-    return found[0] or usual, found[1] or usual
+    usual = radii[0] or radii[1] or distance / 4
+    return radii[0] or usual, radii[1] or usual
 
 
 def _radius(draft: Draft, wheel: str) -> float:

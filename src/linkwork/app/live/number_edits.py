@@ -50,7 +50,7 @@ class TypedUnits:
         """The units of a mechanism."""
         return cls(description.length, description.angle.value)
 
-    def number(self, given: float | str, kind: str, what: str) -> float | str:
+    def number(self, typed: float | str, kind: str, what: str) -> float | str:
         """A number in the file's unit; a number or formula without a unit stays as it is.
 
         ``kind``: length, angle, number, or "" if unknown; ``what``: its name in messages.
@@ -60,39 +60,39 @@ class TypedUnits:
         InputError
             If the unit is of another kind, or one of unknown size.
         """
-        if not isinstance(given, str):
-            return given
-        split = split_unit(given, [*LENGTHS, *ANGLES, self.length])
+        if not isinstance(typed, str):
+            return typed
+        split = split_unit(typed, [*LENGTHS, *ANGLES, self.length])
         if split is None:
-            return given
+            return typed
         amount, unit = split
-        own = "angle" if unit in ANGLES else "length"
-        if kind and own != kind:
+        other = "angle" if unit in ANGLES else "length"
+        if kind and other != kind:
             names = {"length": self.length, "angle": self.angle}.get(kind, "none")
             noun = "a plain number" if kind == "number" else f"{_article(kind)} {kind}"
             raise InputError(
-                f'{what} is {noun}, but "{given}" is {_article(own)} {own} (unit here: {names})'
+                f'{what} is {noun}, but "{typed}" is {_article(other)} {other} (unit here: {names})'
             )
-        wanted = self.angle if own == "angle" else self.length
-        return converted(_amount(amount, given), self._factor(unit, wanted, given))
+        file_unit = self.angle if other == "angle" else self.length
+        return converted(_amount(amount, typed), self._factor(unit, file_unit, typed))
 
-    def speed(self, given: float | str | None) -> float | str | None:
+    def speed(self, typed: float | str | None) -> float | str | None:
         """A speed in a unit that the file reads: "0.5 m/s" becomes "500 mm/s"."""
         rates = {f"{unit}/s": unit for unit in LENGTHS}
-        split = split_unit(given, rates) if isinstance(given, str) else None
+        split = split_unit(typed, rates) if isinstance(typed, str) else None
         if split is None or rates[split[1]] == self.length:
-            return given
-        assert isinstance(given, str)
-        factor = self._factor(rates[split[1]], self.length, given)
-        amount = repr(converted(_amount(split[0], given), factor)).removesuffix(".0")
+            return typed
+        assert isinstance(typed, str)
+        factor = self._factor(rates[split[1]], self.length, typed)
+        amount = repr(converted(_amount(split[0], typed), factor)).removesuffix(".0")
         return f"{amount} {self.length}/s"
 
-    def _factor(self, unit: str, wanted: str, given: str) -> Fraction:
-        factor = conversion(unit, wanted)
+    def _factor(self, unit: str, file_unit: str, typed: str) -> Fraction:
+        factor = conversion(unit, file_unit)
         if factor is None:
             raise InputError(
-                f'"{given}" cannot be converted: the unit of this file, "{wanted}", has no known '
-                "size: leave the unit out, or choose another unit for the file"
+                f'"{typed}" cannot be converted: the unit of this file, "{file_unit}", has no '
+                "known size: leave the unit out, or choose another unit for the file"
             )
         return factor
 
@@ -109,7 +109,7 @@ def _article(word: str) -> str:
     return "an" if word == "angle" else "a"
 
 
-def _amount(amount: str, given: str) -> float:
+def _amount(amount: str, typed: str) -> float:
     """The value of "3", "1/2", "2 1/2" or "3,5"."""
     plain = re.sub(r"^([-+]?\d+),(\d+)$", r"\1.\2", amount)
     plain = re.sub(r"^(\d+)\s+(\d+/\d+)$", r"\1+\2", plain)
@@ -117,7 +117,7 @@ def _amount(amount: str, given: str) -> float:
         return value(parse(plain), {}, AngleUnit.DEGREE, plain)
     except ExpressionError:
         raise InputError(
-            f'"{given}" is not a number with a unit, such as "3 in" or "1/2 in": formulas are in '
+            f'"{typed}" is not a number with a unit, such as "3 in" or "1/2 in": formulas are in '
             "the units of the file and carry none"
         ) from None
 
@@ -126,7 +126,7 @@ def _amount(amount: str, given: str) -> float:
 # Edits of numbers and ranges in the text of a mechanism file.
 
 
-#: What the numbers of tables measure; formulas say it of the others.
+#: The kinds of the numbers of tables; formulas determine the rest.
 _KINDS = {"lengths": "length", "angles": "angle", "points": "length", "sliders": "length"}
 _DRIVES = ("link", "joint", "slider", "cylinder", "variable")
 _LENGTHS = ("slider", "cylinder")
@@ -139,7 +139,7 @@ def set_number(edit: SetNumber, text: TextEdits, before: Before) -> None:
     Raises
     ------
     InputError, UnknownNameError
-        If there is no such number, or the value is of another kind.
+        If the number does not exist, or the value is of another kind.
     """
     description, units = before.description, TypedUnits.of(before.description)
     try:
@@ -197,9 +197,9 @@ def _measured(description: Description, name: str) -> str | None:
     """The key of [lengths] for a named length between sketched points."""
     if not isinstance(description, Draft):
         return None
-    wanted = sorted(map(canonical, name.split()))
+    points = sorted(map(canonical, name.split()))
     for measured in description.measured:
-        if sorted(map(canonical, measured.points)) == wanted:
+        if sorted(map(canonical, measured.points)) == points:
             return " ".join(measured.points)
     return None
 
@@ -227,12 +227,12 @@ def _move_pivot(
 
 
 def set_input(edit: SetInput, text: TextEdits, before: Before) -> None:
-    """Set what is driven, and its range.
+    """Set the input and its range.
 
     Raises
     ------
     InputError, UnknownNameError
-        If there is no such input, or the value is of another kind.
+        If the input does not exist, or the value is of another kind.
     """
     if (edit.drive is None) != (edit.name is None):
         raise InputError("an input has a kind and a name: send drive and name, or neither")

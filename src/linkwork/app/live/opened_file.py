@@ -36,7 +36,7 @@ FILE_REQUESTS = (Undo, Redo, Save)
 
 
 class WorkSign(Protocol):
-    """Receives the finished fraction of long work, and what can be shown before its answer."""
+    """Receives the finished fraction of long work, and events to show before its answer."""
 
     def __call__(self, fraction: float) -> None: ...
 
@@ -47,7 +47,7 @@ class NoSign:
     """Nobody waits for signs of work."""
 
     def __call__(self, fraction: float) -> None:
-        """Nothing is told."""
+        """Send nothing."""
 
     def show(self, events: Events) -> None:
         """Nothing is shown."""

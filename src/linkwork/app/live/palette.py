@@ -96,7 +96,7 @@ def shown_entry(key: Key, entry: object) -> Typed:
 
 
 def part_name(row: Mapping[str, object]) -> str:
-    """The label of a part: its name, the two links of a weld, or what a load acts on."""
+    """The label of a part: its name, the two links of a weld, or the point or link of a load."""
     if "force" in row or "torque" in row:
         return f"load on {row.get('point', row.get('link', ''))}"
     links = row.get("links")
@@ -211,21 +211,21 @@ class _Reader:
     def _number(self, key: Key, kind: NumberValue, word: str) -> float | int | str:
         """A number, or otherwise a formula."""
         plain = word.strip().replace("\u2212", "-")
-        given = self.units.number(plain, measured_by(kind, self.row), key.name)
-        return _plain(given, plain)
+        number = self.units.number(plain, measured_by(kind, self.row), key.name)
+        return _as_number(number, plain)
 
     def _speed(self, word: str) -> float | int | str:
         """A number, or text with a unit that the file reads."""
         plain = word.strip().replace("\u2212", "-")
-        given = self.units.speed(plain)
-        assert given is not None
-        return _plain(given, str(given))
+        speed = self.units.speed(plain)
+        assert speed is not None
+        return _as_number(speed, str(speed))
 
 
-def _plain(given: float | str, text: str) -> float | int | str:
-    """A number, whole without decimals; what is none, or not finite, stays text."""
+def _as_number(number: float | str, text: str) -> float | int | str:
+    """A number, whole without decimals; text that is no finite number stays text."""
     try:
-        value = float(given)
+        value = float(number)
     except ValueError:
         return text
     if not math.isfinite(value):

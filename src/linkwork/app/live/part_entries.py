@@ -1,4 +1,4 @@
-"""Entries of parts as they are typed: shown, changed, and removed with what served them alone."""
+"""Entries of parts as they are typed: shown, changed, removed with points used by them alone."""
 
 from __future__ import annotations
 
@@ -54,7 +54,7 @@ def _named(part: Part, noun: str) -> Iterator[str]:
         match key.kind:
             case Text(of=of) if of == noun and entry is not None:
                 yield entry
-            case ListOf(Text(), own) if own == noun and entry is not None:
+            case ListOf(Text(), kind) if kind == noun and entry is not None:
                 yield from entry
 
 
@@ -64,24 +64,24 @@ def part_row(text: TextEdits, name: str) -> tuple[str, int]:
     Raises
     ------
     UnknownNameError
-        If there is no such part.
+        If the part does not exist.
     """
     names: list[str] = []
     for table in PARTS:
         for k, row in text.entries(table):
-            if canonical(name) == canonical(own := part_name(row)):
+            if canonical(name) == canonical(label := part_name(row)):
                 return table, k
-            names.append(own)
+            names.append(label)
     raise UnknownNameError(f'there is no "{name}" {choices("parts", names, name)}')
 
 
 def put_entry(edit: SetPart, text: TextEdits, units: TypedUnits) -> None:
-    """Write or remove an entry of a part; what it replaces is removed.
+    """Write or remove an entry of a part; the entry that it replaces is removed.
 
     Raises
     ------
     InputError, UnknownNameError
-        If there is no such part or key, or the entry does not match its key.
+        If the part or key does not exist, or the entry does not match its key.
     """
     table, k = part_row(text, edit.name)
     here = (table, k)
@@ -115,12 +115,12 @@ def alone_with(name: str, draft: Draft) -> Iterator[Edit]:
     """What serves this part alone: wheels and blocks of one point with the welds that hold them,
     fixed points on no other link.
     """
-    own = next((p for p in draft.parts if canonical(p.label) == canonical(name)), None)
-    if own is None:
+    named = next((p for p in draft.parts if canonical(p.label) == canonical(name)), None)
+    if named is None:
         return
-    links = [k for k in _named(own, "link") if k != GROUND and len(draft.links.get(k, ())) == 1]
+    links = [k for k in _named(named, "link") if k != GROUND and len(draft.links.get(k, ())) == 1]
     holding = [weld for weld in draft.welds if GROUND in weld.links and {*weld.links} & {*links}]
-    others = [part for part in draft.parts if part is not own and part not in holding]
+    others = [part for part in draft.parts if part is not named and part not in holding]
     links_used = {link for part in others for link in _named(part, "link")}
     points_used = {point for part in others for point in _named(part, "point")}
     carriers = draft.carriers()
@@ -131,8 +131,8 @@ def alone_with(name: str, draft: Draft) -> Iterator[Edit]:
     for link in dict.fromkeys(links):
         if link in gone:
             yield RemoveLink(name=link)
-    for point in dict.fromkeys(_named(own, "point")):
+    for point in dict.fromkeys(_named(named, "point")):
         left = [link for link in carriers.get(point, ()) if link not in gone]
         spare = point in draft.points and point not in points_used
-        if spare and left in ([], [GROUND], [own.label]):
+        if spare and left in ([], [GROUND], [named.label]):
             yield RemovePoint(name=point)

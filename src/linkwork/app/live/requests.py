@@ -63,7 +63,7 @@ class MakeLink:
 
 
 # ----------------------------------------------------------------------
-# Requests about what moves: a simulation, its end, the quantities that are shown.
+# Requests about motion: a simulation, its end, the quantities that are shown.
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -135,7 +135,7 @@ class Picked:
 
 @dataclass(frozen=True, kw_only=True)
 class DrawPart:
-    """Add a part by what was picked in the drawing, with the points and links that it lacks.
+    """Add a part from picks in the drawing, with the points and links that are missing.
 
     ``span``: half the length of a line that is made for it [length].
     """
@@ -207,8 +207,8 @@ class SetEntry:
 class SetNumber:
     """Set a number of the mechanism to a value or formula.
 
-    ``name``: as in a family: ``a2``, ``O2 A``, ``s16.offset``; a measured length becomes a given
-    one. A value may have a unit: "3 in". With ``any_formula`` a number replaces a formula.
+    ``name``: as in a family: ``a2``, ``O2 A``, ``s16.offset``; a measured length becomes a
+    dimension. A value may have a unit: "3 in". With ``any_formula`` a number replaces a formula.
     """
 
     name: str

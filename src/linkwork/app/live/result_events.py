@@ -265,28 +265,28 @@ def cannot_close(
     )
 
 
-def _still(found: Position | NearestAssembly) -> PageData | None:
+def _still(position: Position | NearestAssembly) -> PageData | None:
     """The drawing of a position; ``None`` without points."""
-    points = _points(found.points)
-    # a position that was not found has no coordinates
-    if not points or points.keys() != found.points.keys():
+    points = _points(position.points)
+    # a position that was not solved has no coordinates
+    if not points or points.keys() != position.points.keys():
         return None
-    return still_page(found.skeleton, points, units=found.units, title=found.mechanism)
+    return still_page(position.skeleton, points, units=position.units, title=position.mechanism)
 
 
 def _open_ends(ends: Iterable[LinkEnd]) -> tuple[OpenEnd, ...]:
     return tuple(OpenEnd(link=e.link, point=e.point, joint=e.joint, end=e.end) for e in ends)
 
 
-def configurations_found(found: Configurations) -> ConfigurationsFound:
+def configurations_found(configurations: Configurations) -> ConfigurationsFound:
     """All configurations with their pictures."""
     return ConfigurationsFound(
-        input=dict(found.input),
+        input=dict(configurations.input),
         ways=tuple(
             Way(name=way.configuration, unknowns=dict(way.unknowns), points=_points(way.points))
-            for way in found
+            for way in configurations
         ),
-        completeness=found.message,
+        completeness=configurations.message,
     )
 
 
@@ -384,13 +384,13 @@ def _unknowns_of(sheet: EquationSheet, description: Description) -> tuple[Unknow
 
 def _driven_inputs(sheet: EquationSheet, description: Description) -> tuple[DrivenInput, ...]:
     """The driven quantities and their ranges."""
-    found = []
+    driven = []
     timed = [which for which in description.inputs if which.law is not None]
     # laws of several inputs share the time
     inputs = timed[:1] or description.inputs
     for which, variable in zip(inputs, sheet.equations.inputs, strict=True):
         rows = description.rows(which)
-        found.append(
+        driven.append(
             DrivenInput(
                 name=variable.name,
                 unit={"angle": description.angle.value, "length": description.length}.get(
@@ -403,15 +403,15 @@ def _driven_inputs(sheet: EquationSheet, description: Description) -> tuple[Driv
                 speed="" if which.speed is None else str(which.speed),
             )
         )
-    return tuple(found)
+    return tuple(driven)
 
 
 def _sketched_points(description: Description) -> dict[str, tuple[float, float]]:
-    """The movable points of a sketch; none if they are given by equations."""
+    """The movable points of a sketch; none if equations define them."""
     if not isinstance(description, Draft):
         return {}
-    found = description.drawable if description.problems else description
-    places = {point: found.sketched(point) for point in found.points}
+    drawable = description.drawable if description.problems else description
+    places = {point: drawable.sketched(point) for point in drawable.points}
     return {point: (float(z.real), float(z.imag)) for point, z in places.items()}
 
 

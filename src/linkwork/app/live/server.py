@@ -86,12 +86,12 @@ class Guard:
 
     def refused(self, method: str, raw_path: bytes, headers: Headers) -> Refusal | None:
         """The reason to refuse a request for a page; ``None`` to answer it."""
-        given = list(headers)
-        if (refusal := self._foreign(given)) is not None:
+        listed = list(headers)
+        if (refusal := self._foreign(listed)) is not None:
             return refusal
         if method not in ("GET", "HEAD"):
             return Refusal(status=405, message="only GET is answered here")
-        if _has_body(given):
+        if _has_body(listed):
             return Refusal(status=413, message="a request here has no body")
         if raw_path.decode("latin-1") not in self.paths:
             return Refusal(status=404, message="there is nothing here")
@@ -101,10 +101,10 @@ class Guard:
         self, path: str, headers: Headers, subprotocols: Iterable[str]
     ) -> Refusal | None:
         """The reason to refuse a connection; ``None`` to accept it."""
-        given = list(headers)
-        if (refusal := self._foreign(given)) is not None:
+        listed = list(headers)
+        if (refusal := self._foreign(listed)) is not None:
             return refusal
-        if not _all(given, b"origin"):
+        if not _all(listed, b"origin"):
             return Refusal(status=403, message="a connection needs an Origin")
         if path != "/live":
             return Refusal(status=404, message="there is nothing here")
@@ -242,7 +242,7 @@ class LiveServer:
         Parameters
         ----------
         tell : callable
-            Called before the server starts, once its packages are found: Ctrl-C then ends it.
+            Called before the server starts, after its packages are imported: Ctrl-C then ends it.
 
         Raises
         ------
@@ -270,7 +270,7 @@ class LiveServer:
     def _ended_by_signals(self) -> Iterator[None]:
         """Stop the server at Ctrl-C, SIGTERM or a closed terminal, without loss of data.
 
-        While uvicorn runs, its own handlers are active; it raises a received signal again at its
+        While uvicorn runs, its handlers are active; it raises a received signal again at its
         end.
         """
         before: dict[int, Any] = {}
@@ -379,17 +379,17 @@ _OCCUPIED_MESSAGE = (
 
 def _listening(port: int) -> socket.socket:
     """A listening socket on the loopback address only."""
-    found = socket.socket(socket.AF_INET, socket.SOCK_STREAM)
+    listening = socket.socket(socket.AF_INET, socket.SOCK_STREAM)
     try:
-        found.bind((_LOOPBACK, port))
-        found.listen(_MOST_WAITING_TO_CONNECT)
+        listening.bind((_LOOPBACK, port))
+        listening.listen(_MOST_WAITING_TO_CONNECT)
     except (OSError, OverflowError) as error:
-        found.close()
+        listening.close()
         reason = getattr(error, "strerror", None) or str(error)
         raise InputError(
             f"port {port} cannot be used: {reason}; leave out --port to use a free port"
         ) from None
-    return found
+    return listening
 
 
 def _uvicorn(app: Callable[..., Any]) -> Any:

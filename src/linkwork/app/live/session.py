@@ -68,23 +68,23 @@ class WorkSigns:
     def __init__(self, tell: Tell) -> None:
         self._tell = tell
         self._number: int | None = None
-        self._told_at = 0.0
+        self._sent_at = 0.0
         self._early: list[Event] = []
 
     def begin(self, number: int | None) -> None:
         """Begin with a request of this id."""
-        self._number, self._told_at = number, time.monotonic()
+        self._number, self._sent_at = number, time.monotonic()
         self._early = []
 
     def __call__(self, fraction: float) -> None:
         """Report the finished fraction, a few times per second at most."""
         now = time.monotonic()
-        if now - self._told_at >= _PACE:
-            self._told_at = now
+        if now - self._sent_at >= _PACE:
+            self._sent_at = now
             self._tell([Working(fraction=min(1.0, max(0.0, fraction)))], self._number)
 
     def show(self, events: list[Event]) -> None:
-        """Send what is known before the answer."""
+        """Send events before the answer."""
         self._early = events
         self._tell(events, None)
 
@@ -106,8 +106,8 @@ def answer(work: Callable[[], list[Event]]) -> list[Event]:
     try:
         return work()
     except OSError as error:
-        told = f"a file that this needs cannot be read ({error}): check the connection, try again"
-        return [Refused(message=told)]
+        text = f"a file that this needs cannot be read ({error}): check the connection, try again"
+        return [Refused(message=text)]
     except Exception as error:
         _log.exception("a request failed")
         mistake = f"{type(error).__name__}: {error}"
@@ -155,7 +155,7 @@ class Desk:
         self.ask(*_UNTOLD)
 
     def open(self) -> None:
-        """Send the complete state; what is known of it at once, while a long answer is prepared."""
+        """Send the complete state: its known part at once, while a long answer is prepared."""
         self._signs.show_again()
         self.ask(None, None)
 

@@ -1,4 +1,4 @@
-"""Simulations asked for by the page: the motion in time, its events, and forms that mend it."""
+"""Simulations that the page requests: motion in time, its events, and forms to correct it."""
 
 from __future__ import annotations
 
@@ -53,18 +53,18 @@ def simulate(request: Simulate, subject: Subject, progress: Callable[[float], No
             "page: the command linkwork simulate has no such limit"
         )
     at = {
-        name: _number(description, units.number(given, "", f"the start of {name}"), name)
-        for name, given in (request.at or {}).items()
-        if given != ""
+        name: _number(description, units.number(typed, "", f"the start of {name}"), name)
+        for name, typed in (request.at or {}).items()
+        if typed != ""
     }
     return mechanism.simulate(
         until,
         step=step,
         at=at or None,
         start_speed={
-            name: _speed(units.speed(given))
-            for name, given in (request.start_speeds or {}).items()
-            if given != ""
+            name: _speed(units.speed(typed))
+            for name, typed in (request.start_speeds or {}).items()
+            if typed != ""
         }
         or _speed(units.speed(request.start_speed)),
         change_points=request.change_points,
@@ -72,9 +72,9 @@ def simulate(request: Simulate, subject: Subject, progress: Callable[[float], No
     )
 
 
-def _seconds(given: float | str | None, what: str) -> float:
+def _seconds(typed: float | str | None, what: str) -> float:
     """A time [s]; "0.5 s" and "500 ms" are read as well."""
-    text = str(given).strip().replace(",", ".")
+    text = str(typed).strip().replace(",", ".")
     for unit, factor in (("ms", 1e-3), ("s", 1.0), ("min", 60.0)):
         if text.endswith(unit) and not text[: -len(unit)].strip().endswith("m"):
             text, scale = text[: -len(unit)].strip(), factor
@@ -86,25 +86,25 @@ def _seconds(given: float | str | None, what: str) -> float:
     except ValueError:
         seconds = math.nan
     if not math.isfinite(seconds):
-        raise InputError(f'{what} must be a time in seconds, such as 2, got "{given}"')
+        raise InputError(f'{what} must be a time in seconds, such as 2, got "{typed}"')
     return seconds
 
 
-def _number(description: Description, given: float | str, name: str) -> float:
+def _number(description: Description, typed: float | str, name: str) -> float:
     try:
-        return description.numbers(given)
+        return description.numbers(typed)
     except ExpressionError as error:
         raise InputError(f"the start of {name}: {error.message}") from None
 
 
-def _speed(given: float | str | None) -> float | str:
+def _speed(typed: float | str | None) -> float | str:
     """A speed: plain numbers are in the units of the file."""
-    if given is None or given == "":
+    if typed is None or typed == "":
         return 0
     try:
-        return float(given)
+        return float(typed)
     except ValueError:
-        return given
+        return typed
 
 
 def simulation_found(motion: Motion, page: PageData | None, subject: Subject) -> SimulationFound:
@@ -162,7 +162,7 @@ def _forms(description: Description, message: str) -> Iterator[FormOffered]:
 
 
 def _mending(description: Description, message: str) -> tuple[str, ...]:
-    """The forms that mend what a message of a simulation says."""
+    """The forms in which to correct the problem that a message of a simulation names."""
     if not isinstance(description, LoadedBodies) or description.timed:
         return ("text",)
     if not description.inputs:

@@ -1,4 +1,4 @@
-"""The text under edit: a mechanism, or a draft with what it lacks."""
+"""The text under edit: a mechanism, or a draft with its missing items."""
 
 from __future__ import annotations
 
@@ -88,8 +88,8 @@ class Subject:
             position = self.solvable.solve(certify=certify)
             if position.status.ok and position.points:
                 title, units = position.mechanism, position.units
-                found = position.skeleton, position.points
-                return still_page(*found, units=units, title=title, size=size, kept=kept)
+                drawn = position.skeleton, position.points
+                return still_page(*drawn, units=units, title=title, size=size, kept=kept)
         if not isinstance(self.description, Draft):
             return None
         draft = self.description.drawable
@@ -155,14 +155,14 @@ def missing_items(subject: Subject) -> tuple[Lack, ...]:
     if not any(map(len, draft.links.values())):
         text = "Draw the first link: drag from one of its ends to the other."
         return (Lack(message=text, key="", line=None, kind="", name="", remedies=()),)
-    found = [*_without_ground(draft)]
+    missing = [*_without_ground(draft)]
     for problem in subject.problems:
-        if found and problem.key[:1] == ("links",) and len(problem.key) == 1:
+        if missing and problem.key[:1] == ("links",) and len(problem.key) == 1:
             continue  # ground is missing
         if problem.key == ("links", GROUND):
             continue
-        found.append(_of_problem(problem, draft, subject.draft))
-    return tuple(found[:_MOST])
+        missing.append(_of_problem(problem, draft, subject.draft))
+    return tuple(missing[:_MOST])
 
 
 def _without_ground(draft: Draft) -> Iterator[Lack]:
@@ -190,10 +190,10 @@ def _free_ends(draft: Draft) -> tuple[str, ...]:
     held = {point for part in draft.parts for point in _guided(part)}
     ends = []
     for link, points in draft.links.items():
-        own = [point for point in points if len(carriers[point]) < 2 and point not in held]
+        free = [point for point in points if len(carriers[point]) < 2 and point not in held]
         # a link held at two points elsewhere needs no third
-        if link != GROUND and len(points) - len(own) < 2:
-            ends += own if len(points) <= 2 else own[:1]
+        if link != GROUND and len(points) - len(free) < 2:
+            ends += free if len(points) <= 2 else free[:1]
     for part in draft.parts:
         ends += [point for point in part.body if len(carriers[point]) < 2 and point not in held]
     return tuple(dict.fromkeys(ends))
@@ -279,14 +279,14 @@ def _planetary_wheels(draft: Draft) -> Iterator[str]:
     """Wheels about a fixed point in pairs with a moving arm: one of them is usually held."""
     held = {link for weld in draft.welds for link in weld.links}
     driven = {which.link for which in draft.inputs}
-    found = {
+    wheels = {
         wheel: None
         for pair in draft.of(ArmPair)
         if pair.arm != GROUND
         for wheel, center in zip(pair.wheels, pair.centers, strict=True)
         if center in draft.links[GROUND] and wheel != GROUND
     }
-    yield from (wheel for wheel in found if wheel not in held | driven)
+    yield from (wheel for wheel in wheels if wheel not in held | driven)
 
 
 def _span(draft: Draft, link: str) -> float:
@@ -312,7 +312,7 @@ _CLOSED = 1e-9  # relative to the gap at the start: closed
 def closing_input(mechanism: Mechanism) -> Mapping[str, float]:
     """The value of a single input at which a mechanism closes that is open at its start.
 
-    Some rows of the table are tried, those next to the start first. Empty if none of them closes,
+    Some rows of the table are tried, those next to the start first. Empty if none closes,
     or if the start is not that of a sketch.
     """
     description = mechanism.description
@@ -334,7 +334,7 @@ def sketch_at(mechanism: Mechanism, at: Mapping[str, float]) -> tuple[MovePoint,
     Raises
     ------
     InputError
-        If the points are given by equations, or values do not match the inputs.
+        If equations define the points, or values do not match the inputs.
     """
     description = mechanism.description
     if not isinstance(description, Linkage):

@@ -150,7 +150,7 @@ class TaskSolved:
     interrupted: bool
     error_unit: str
     defects: dict[str, float]
-    costliest: str
+    costliest: str  # noqa: V107  # read by the page
     costs: int
     advice: str
     designs: tuple[DesignShown, ...]

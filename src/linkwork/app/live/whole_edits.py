@@ -29,7 +29,7 @@ class Rename:
 
 @dataclass(frozen=True, kw_only=True)
 class Duplicate:
-    """Copy points and links, with what is between them.
+    """Copy points and links, with the parts between them.
 
     By the names of points and links: ``names`` of the copies, the same for a point that is shared,
     and ``places`` of new points [length]. ``mirrored``: the copy is a mirror image.

@@ -103,8 +103,8 @@ class Workbench(OpenedFile):
                 self._end_drag()
             return self._handle(request)
         except MechanismError as error:
-            found = problems_found(error, lines=not isinstance(request, _ADDING))
-            events: Events = [found, *self._after_refusal(request)]
+            problems = problems_found(error, lines=not isinstance(request, _ADDING))
+            events: Events = [problems, *self._after_refusal(request)]
         except InputError as error:
             events = [Refused(message=str(error)), *self._after_refusal(request)]
         return [*events, *(self.cycle.events() if self.cycle.owed else [])]
@@ -124,9 +124,9 @@ class Workbench(OpenedFile):
         if isinstance(request, Query):
             return answered(request, self.cycle.subject.mechanism)
         if isinstance(request, Question):
-            own = getattr(request, "simulated", False)
-            about = self._about(proved=isinstance(request, Export) and not own)
-            return reply(request, replace(about, motion=self.cycle.simulated) if own else about)
+            timed = getattr(request, "simulated", False)
+            about = self._about(proved=isinstance(request, Export) and not timed)
+            return reply(request, replace(about, motion=self.cycle.simulated) if timed else about)
         raise TypeError(f"{type(request).__name__} is not a request")
 
     def _edited(self, edit: Edit) -> Events:
@@ -140,13 +140,13 @@ class Workbench(OpenedFile):
         try:
             followed = applied(edit, drag.text, drag.before)
             text = drag.text.text
-            told = self._accepted(text, edit_title(edit), live=live, refused=refusing(edit))
+            events = self._accepted(text, edit_title(edit), live=live, refused=refusing(edit))
         except InputError:
             drag.text = TextEdits(self.text)  # without traces of the failed change
             raise
         if live:
             drag.latest, drag.what = text, edit_title(edit)
-        return [*_followed(edit, followed), *told]
+        return [*_followed(edit, followed), *events]
 
     def _text_edits(self) -> TextEdits:
         """The text, for edits of its entries."""
@@ -211,12 +211,12 @@ class Workbench(OpenedFile):
 
     @_handle.register
     def _(self, request: Cancel) -> Events:
-        return self.cycle.events() if self.cycle.owed else []  # what it ended was another work
+        return self.cycle.events() if self.cycle.owed else []  # it ended other work
 
     # The text and its results
 
     def _open(self, file: MechanismFile) -> None:
-        """Another file, with a history of its own."""
+        """Another file, with a new history."""
         self._file, self._history, self._begun = file, History(file.text), True
         self._drag, self._conflict = None, None
         self.cycle.begin(self._read_whatever(file.text))

@@ -87,7 +87,7 @@ def film_bytes(pictures: Iterable[AnyArray], kind: str, fps: float) -> bytes:
     first, *others = _images(pictures, kind)
     buffer = io.BytesIO()
     # Milliseconds of every frame, rounded so that the total duration is exact.
-    own = {
+    settings = {
         "gif": {"format": "GIF", "optimize": False, "disposal": 1},
         "apng": {"format": "PNG"},
         "webp": {"format": "WEBP", "lossless": True, "method": 2},
@@ -98,7 +98,7 @@ def film_bytes(pictures: Iterable[AnyArray], kind: str, fps: float) -> bytes:
         append_images=others,
         duration=round(1000 / fps),
         loop=0,
-        **own,  # type: ignore[arg-type]
+        **settings,  # type: ignore[arg-type]
     )
     return buffer.getvalue()
 
@@ -154,13 +154,13 @@ def _pillow() -> ModuleType:
 
 
 def _ffmpeg() -> str:
-    found = shutil.which("ffmpeg")
-    if found is None:
+    program = shutil.which("ffmpeg")
+    if program is None:
         raise MissingPackageError(
             "MP4 needs the program ffmpeg, which is not on the PATH: install it "
             "(apt-get install ffmpeg, brew install ffmpeg), or write .gif or .html"
         )
-    return found
+    return program
 
 
 # ----------------------------------------------------------------------
@@ -312,13 +312,13 @@ def _film(
     theme = theme_named(options.theme, THEMES)
     pictures = film(scene, rows, captions, turned, dpi=options.dpi, theme=theme)
 
-    def told() -> Iterator[AnyArray]:
+    def with_progress() -> Iterator[AnyArray]:
         for k, picture in enumerate(pictures, 1):
             yield picture
             if progress is not None:
                 progress(k / len(rows))
 
-    return film_bytes(told(), kind, options.fps)
+    return film_bytes(with_progress(), kind, options.fps)
 
 
 def _film_rows(motion: Motion, options: FilmOptions) -> list[int]:
@@ -326,15 +326,15 @@ def _film_rows(motion: Motion, options: FilmOptions) -> list[int]:
     equal intervals.
     """
     order, closed = play_order(motion)
-    wanted = options.rows or max(2, round(_LASTING * options.fps))
+    pictures = options.rows or max(2, round(_LASTING * options.fps))
     if in_time(motion):
         times = next(iter(motion.inputs.values()))[order]
-        asked = np.linspace(times[0], times[-1], min(wanted, len(order)))
-        return [int(row) for row in order[np.searchsorted(times, asked, side="right") - 1]]
+        at = np.linspace(times[0], times[-1], min(pictures, len(order)))
+        return [int(row) for row in order[np.searchsorted(times, at, side="right") - 1]]
     if closed:
-        count = min(wanted, len(order))
+        count = min(pictures, len(order))
         return [int(order[k * len(order) // count]) for k in range(count)]
-    count = min(wanted if options.rows else wanted // 2 + 1, len(order))
+    count = min(pictures if options.rows else pictures // 2 + 1, len(order))
     there = [int(order[k]) for k in np.linspace(0, len(order) - 1, count).round().astype(int)]
     return there + there[-2:0:-1]
 

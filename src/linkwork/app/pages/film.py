@@ -42,7 +42,7 @@ def film(
     ----------
     moving : MovingScene
     rows : sequence of int
-        Rows that were found.
+        Rows with a position.
     captions : sequence of str
         The text under the title in each picture.
     turned : sequence of bool

@@ -49,7 +49,7 @@ def lasting_labels(
     of its penalties in all rows plus a share of the worst.
     """
     pose = poses[0]
-    names = [_with_more_places(choice, pose, measures) for choice in point_names(pose, measures)]
+    names = [_with_more_positions(choice, pose, measures) for choice in point_names(pose, measures)]
     boxes = [_boxes(choice, turns, poses) for choice, turns in names]
     covered = _covered(drawn, boxes)
     fixed = [
@@ -86,7 +86,7 @@ def _directions(link: str, poses: Sequence[Pose]) -> ComplexArray:
     return np.asarray(along / np.abs(along))
 
 
-def _with_more_places(
+def _with_more_positions(
     choice: Choice, pose: Pose, measures: Measures
 ) -> tuple[Choice, tuple[str, ...]]:
     """More positions for a motion, and the link with which each one turns.
@@ -125,26 +125,26 @@ def _covered(drawn: Sequence[Sequence[Primitive]], boxes: Sequence[Array]) -> li
     """The penalties of every name's positions in every row, each (rows, places)."""
     every = np.concatenate(boxes, axis=1)
     cost = [
-        Obstacles.of(shapes).costs(own[:, None, :])
-        for shapes, own in zip(drawn, every, strict=True)
+        Obstacles.of(shapes).costs(candidates[:, None, :])
+        for shapes, candidates in zip(drawn, every, strict=True)
     ]
     return np.split(np.array(cost), np.cumsum([b.shape[1] for b in boxes])[:-1], axis=1)
 
 
 def _over_rows(cost: Array) -> Array:
-    found: Array = (1 - _WORST) * cost.mean(axis=0) + _WORST * cost.max(axis=0)
-    return found
+    total: Array = (1 - _WORST) * cost.mean(axis=0) + _WORST * cost.max(axis=0)
+    return total
 
 
 def _settled(fixed: Sequence[Array], boxes: Sequence[Array]) -> list[int]:
-    """The position of every name given those of the others: the better of two local optima.
+    """The position of every label, the better of two local optima.
 
     Names with the fewest free positions are placed first, or last.
     """
     order = sorted(range(len(fixed)), key=lambda k: -float(fixed[k].min()))
     near = _neighbours(boxes)
-    found = [_descended(fixed, boxes, near, one) for one in (order, order[::-1])]
-    return min(found, key=lambda pair: pair[0])[1]
+    tried = [_descended(fixed, boxes, near, one) for one in (order, order[::-1])]
+    return min(tried, key=lambda pair: pair[0])[1]
 
 
 def _descended(
@@ -171,10 +171,10 @@ def _descended(
 def _neighbours(boxes: Sequence[Array]) -> BoolArray:
     """Whether any positions of two different names can overlap in a row, (n, n)."""
     around = np.stack([
-        np.concatenate((own[..., :2].min(axis=1), own[..., 2:].max(axis=1)), axis=-1)
-        for own in boxes
+        np.concatenate((box[..., :2].min(axis=1), box[..., 2:].max(axis=1)), axis=-1)
+        for box in boxes
     ], axis=1)  # fmt: skip
-    near = np.stack([_overlapping(around, own).any(axis=0) for own in around.swapaxes(0, 1)])
+    near = np.stack([_overlapping(around, box).any(axis=0) for box in around.swapaxes(0, 1)])
     return np.asarray(near & ~np.eye(len(boxes), dtype=bool))
 
 

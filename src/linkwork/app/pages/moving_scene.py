@@ -96,13 +96,13 @@ class Frames:
     def placed(self, frame: Frame, local: ComplexArray, rows: CountArray) -> ComplexArray:
         """Coordinates (R, m) in R rows of a shape (m,) constant in a frame."""
         count = len(rows)
-        found = np.broadcast_to(local, (count, len(local)))
+        placed = np.broadcast_to(local, (count, len(local)))
         angle, origin = np.asarray(self.angle(frame)), np.asarray(self.origin(frame))
         if angle.ndim:
-            found = found * np.exp(1j * angle[rows])[:, None]
+            placed = placed * np.exp(1j * angle[rows])[:, None]
         if origin.ndim:
-            found = found + origin[rows][:, None]
-        return found
+            placed = placed + origin[rows][:, None]
+        return placed
 
     def holding(
         self,
@@ -218,7 +218,7 @@ def keyed(primitives: Iterator[Primitive]) -> Iterator[tuple[Key, Primitive]]:
 def attach_shapes(
     motion: Motion, pose: Pose, measures: Measures, frames: Frames, rows: CountArray
 ) -> dict[Key, Moving]:
-    """Each primitive with its frame, found from its coordinates in these rows."""
+    """Each primitive with its frame, from its coordinates in these rows."""
     first: dict[Key, Primitive] = {}
     course: dict[Key, dict[int, Primitive]] = {}
     for k, row in enumerate(rows):
@@ -239,12 +239,12 @@ def _one_attached(
     motion: Motion,
     measures: Measures,
 ) -> Moving:
-    found = [corners(one) for one in along.values()]
+    courses = [corners(one) for one in along.values()]
     # a shape missing in some rows, or with other corners, is not rigid
-    alike = len(along) == len(rows) and len({len(one) for one in found}) == 1
+    alike = len(along) == len(rows) and len({len(one) for one in courses}) == 1
     if alike and same_sizes(along.values(), measures.size):
         frame = frames.holding(
-            np.stack(found),
+            np.stack(courses),
             rows,
             measures.size,
             first=shape.of,
@@ -252,7 +252,7 @@ def _one_attached(
         )
         if frame is not None:
             return Moving(shape=shape, frame=frame)
-    return _own_course(shape, along, rows, len(motion))
+    return _varying_course(shape, along, rows, len(motion))
 
 
 def _closed(shape: Primitive) -> bool:
@@ -262,7 +262,7 @@ def _closed(shape: Primitive) -> bool:
     return line or isinstance(shape, Polygon)
 
 
-def _own_course(
+def _varying_course(
     shape: Primitive, along: Mapping[int, Primitive], rows: CountArray, count: int
 ) -> Moving:
     """A primitive with its corners in every row; an arc becomes a line."""
@@ -274,8 +274,8 @@ def _own_course(
         # a shorter line repeats its last corner, which draws nothing
         course[rows[k], len(line) :] = line[-1]
     if isinstance(shape, Arc):
-        own = {"role": shape.role, "of": shape.of, "tone": shape.tone, "head": shape.head}
-        shape = Polyline(points=tuple(map(xy, _as_line(shape))), **own)  # type: ignore[arg-type]
+        style = {"role": shape.role, "of": shape.of, "tone": shape.tone, "head": shape.head}
+        shape = Polyline(points=tuple(map(xy, _as_line(shape))), **style)  # type: ignore[arg-type]
     return Moving(shape=shape, frame=None, course=course)
 
 
@@ -295,7 +295,7 @@ def take_over_frames(
     carried: Mapping[Key, Moving],
     rows: CountArray,
 ) -> list[Moving]:
-    """The primitives of a pose with the frames found for other dimensions."""
+    """The primitives of a pose with the frames of other dimensions."""
     changing = [key for key, part in carried.items() if part.frame is None]
     course: dict[Key, dict[int, Primitive]] = {key: {} for key in changing}
     for k, row in enumerate(rows if changing else ()):
@@ -303,7 +303,7 @@ def take_over_frames(
             if key in course:
                 course[key][k] = primitive
     return [
-        _own_course(shape, course[key], rows, len(motion))
+        _varying_course(shape, course[key], rows, len(motion))
         if key in course
         else Moving(shape=shape, frame=carried[key].frame)
         for key, shape in shown.items()
@@ -349,7 +349,7 @@ class MovingScene:
     parts: tuple[Moving, ...]
 
     def at(self, row: int, *, turned: bool = False) -> Scene:
-        """The picture in a found row; ``turned``: with reversed arrows of inputs."""
+        """The picture in a solved row; ``turned``: with reversed arrows of inputs."""
         if not self.found[row]:
             raise InputError(f"row {row} of the motion has no position to draw")
         shapes = tuple(filter(None, (self._placed(part, row) for part in self.parts)))
@@ -360,8 +360,8 @@ class MovingScene:
     def _placed(self, part: Moving, row: int) -> Primitive | None:
         if part.frame is None:
             assert part.course is not None
-            own = part.course[row]
-            return with_corners(part.shape, own) if np.isfinite(own[0]) else None
+            course = part.course[row]
+            return with_corners(part.shape, course) if np.isfinite(course[0]) else None
         if part.frame == STILL:
             return part.shape
         local = self.frames.local(part.frame, corners(part.shape)[None], np.array([self.row]))[0]
@@ -521,9 +521,9 @@ def _arrows(
 ) -> Iterator[Moving]:
     """An arrow for every input, attached to the driven part as in the reference row."""
     sense = -1.0 if (speed or 0.0) < 0 else 1.0
-    found = tracks(pose, measures, tones(pose))
+    drawn_tracks = tracks(pose, measures, tones(pose))
     drawn = [part.shape for part in parts]
-    for arrow in input_arrows(pose, found, measures, sense, drawn):
+    for arrow in input_arrows(pose, drawn_tracks, measures, sense, drawn):
         yield Moving(shape=arrow, frame=_driving(pose, arrow, frames))
 
 

@@ -1,7 +1,7 @@
 """Results as HTML for notebooks: a picture and a short table, no script, light and dark.
 
 This module solves nothing. A result that cannot be drawn (a mechanism without points, a position
-that was not found) is shown as a table only.
+that was not solved) is shown as a table only.
 """
 
 from __future__ import annotations
@@ -86,7 +86,7 @@ def mechanism_html(what: str, start: Position, equations: Sequence[tuple[str, st
     what : str
         Its name and a short description.
     start : Position
-        If it was not found, the table gives the reason.
+        If it was not solved, the table gives the reason.
     equations : sequence of (str, str)
         Labels and MathML of the loop equations.
     """
@@ -105,15 +105,15 @@ def motion_html(motion: Motion) -> str:
     return _element(motion_summary(motion), pictures, inks)
 
 
-def configurations_html(found: Configurations) -> str:
+def configurations_html(configurations: Configurations) -> str:
     """Every configuration as a picture, all of one scale, and as a row."""
     inks, pictures = Inks(), []
-    if len(found) and found[0].points:
-        sheet = configuration_sheet(found)
+    if len(configurations) and configurations[0].points:
+        sheet = configuration_sheet(configurations)
         pictures = [
             _figure(scene, inks, _IN_ROW, sheet.view, scene.title) for scene in sheet.scenes[:_MOST]
         ]
-    return _element(configurations_summary(found), pictures, inks)
+    return _element(configurations_summary(configurations), pictures, inks)
 
 
 def circuits_html(circuits: Circuits) -> str:
@@ -123,7 +123,7 @@ def circuits_html(circuits: Circuits) -> str:
     if drawn:
         within = Box.around(corner for c in drawn for corner in reach_of(c.motion).corners)
         scenes = [_motion_picture(circuit.motion, within) for circuit in drawn]
-        view = Box.around(corner for _, own in scenes for corner in own.corners)
+        view = Box.around(corner for _, picture in scenes for corner in picture.corners)
         pictures = [
             _figure(replace(scene, title=circuit.name), inks, _OF_CIRCUIT, view, circuit.name)
             for circuit, (scene, _) in zip(drawn, scenes, strict=True)
@@ -131,14 +131,14 @@ def circuits_html(circuits: Circuits) -> str:
     return _element(circuits_summary(circuits), pictures, inks)
 
 
-def sensitivity_html(found: Sensitivity) -> str:
+def sensitivity_html(sensitivity: Sensitivity) -> str:
     """The derivatives of a quantity, the largest first."""
-    return _element(sensitivity_summary(found), [], Inks())
+    return _element(sensitivity_summary(sensitivity), [], Inks())
 
 
-def tolerance_html(found: Tolerance) -> str:
+def tolerance_html(tolerance: Tolerance) -> str:
     """A tolerance: worst case, root sum square, shares."""
-    return _element(tolerance_summary(found), [], Inks())
+    return _element(tolerance_summary(tolerance), [], Inks())
 
 
 def _position(
@@ -250,8 +250,8 @@ def motions_widget(
     page = json.loads(page_json(data))
     rows = {name: np.flatnonzero(m.found) for name, m in motions.items() if m.found.any()}
     shown = motions[next(iter(rows))]
-    found = {name: frozenset(found.tolist()) for name, found in rows.items()}
-    return kind(page, found, motion_html(shown))
+    solved_rows = {name: frozenset(solved_rows.tolist()) for name, solved_rows in rows.items()}
+    return kind(page, solved_rows, motion_html(shown))
 
 
 @lru_cache
@@ -294,13 +294,13 @@ def _widget_class() -> Any:
             return name
 
         @traitlets.validate("row")  # type: ignore[untyped-decorator]
-        def _found(self, proposal: Any) -> int:
+        def _known_row(self, proposal: Any) -> int:  # noqa: V105
             row: int = proposal["value"]
             if row not in self._rows[self.configuration]:
                 rows = self._rows[self.configuration]
                 raise traitlets.TraitError(
                     f'row {row} of "{self.configuration}" has no position to show: '
-                    f"{len(rows)} rows from {min(rows)} to {max(rows)} were found"
+                    f"{len(rows)} rows from {min(rows)} to {max(rows)} have one"
                 )
             return row
 

@@ -55,27 +55,27 @@ class Pack(Protocol):
     """An encoding of a column."""
 
     def __call__(
-        self, values: Array, found: BoolArray, *, step: float | None = None, rate: bool = False
+        self, values: Array, solved: BoolArray, *, step: float | None = None, rate: bool = False
     ) -> PackedColumn:
-        """The ``found`` rows of a column (N,)."""
+        """The ``solved`` rows of a column (N,)."""
 
 
 def packed(
-    values: Array, found: BoolArray, *, step: float | None = None, rate: bool = False
+    values: Array, solved: BoolArray, *, step: float | None = None, rate: bool = False
 ) -> PackedColumn:
-    """Pack the ``found`` rows of a column (N,); values that are not finite become gaps.
+    """Pack the ``solved`` rows of a column (N,); values that are not finite become gaps.
 
     Parameters
     ----------
     values : array (N,)
-    found : array (N,) of bool
+    solved : array (N,) of bool
     step : float, optional
         Rounding step; by default ten digits of the largest value.
     rate : bool
         A derivative, which is unbounded near a dead point: seven digits of usual values.
     """
-    known = np.isfinite(values[found])
-    kept = np.where(known, values[found], 0.0)
+    known = np.isfinite(values[solved])
+    kept = np.where(known, values[solved], 0.0)
     if rate:
         kept, step = _clipped(kept)
     largest = float(np.abs(kept).max(initial=0.0))
@@ -93,17 +93,17 @@ def packed(
 
 
 def unpressed(
-    values: Array, found: BoolArray, *, step: float | None = None, rate: bool = False
+    values: Array, solved: BoolArray, *, step: float | None = None, rate: bool = False
 ) -> PackedColumn:
     """Pack a column as plain floats: fast and exact."""
-    return _plain(values, found, PLAIN)
+    return _plain(values, solved, PLAIN)
 
 
 def shortened(
-    values: Array, found: BoolArray, *, step: float | None = None, rate: bool = False
+    values: Array, solved: BoolArray, *, step: float | None = None, rate: bool = False
 ) -> PackedColumn:
     """Pack a column with seven digits, in half the size."""
-    return _plain(values, found, SHORT)
+    return _plain(values, solved, SHORT)
 
 
 def _clipped(kept: Array) -> tuple[Array, float]:
@@ -116,10 +116,10 @@ def _clipped(kept: Array) -> tuple[Array, float]:
     return np.clip(kept, -1e4 * usual, 1e4 * usual), float(step)
 
 
-def _plain(values: Array, found: BoolArray, order: int) -> PackedColumn:
-    own = values if found.all() else values[found]
+def _plain(values: Array, solved: BoolArray, order: int) -> PackedColumn:
+    kept_values = values if solved.all() else values[solved]
     with np.errstate(over="ignore"):
-        kept = own.astype(_FLOATS[order])
+        kept = kept_values.astype(_FLOATS[order])
     # larger values are gaps, as those that are not finite
     fitting = np.isfinite(kept)
     if not fitting.all():
@@ -172,7 +172,7 @@ _MEETING = 1.5  # in multiples of the largest step: runs with nearer ends are jo
 
 
 def play_order(motion: Motion) -> tuple[CountArray, bool]:
-    """Found rows in order, and whether the first follows the last.
+    """Solved rows in order, and whether the first follows the last.
 
     A table starts anywhere on a circuit, may have a gap without positions, and lists further
     branches at its end. Runs of neighbouring rows are joined at common ends; other runs follow each
@@ -253,7 +253,7 @@ def _passed_once(order: CountArray, places: ComplexArray) -> BoolArray:
 
 
 def _runs(places: ComplexArray, motion: Motion) -> list[CountArray]:
-    """Runs of neighbouring found rows, interrupted at jumps of the mechanism.
+    """Runs of neighbouring solved rows, interrupted at jumps of the mechanism.
 
     Near a limit, large motions for small input steps on one branch are not jumps.
     """
@@ -386,10 +386,10 @@ def _flat(line: ComplexArray, size: float) -> tuple[float, ...]:
     return tuple((np.round(pairs, digits) + 0.0).tolist())
 
 
-def _course(course: ComplexArray, found: BoolArray, pack: Pack) -> Iterator[PackedColumn]:
+def _course(course: ComplexArray, solved: BoolArray, pack: Pack) -> Iterator[PackedColumn]:
     for corner in course.T:
-        yield pack(np.nan_to_num(corner.real), found)
-        yield pack(np.nan_to_num(corner.imag), found)
+        yield pack(np.nan_to_num(corner.real), solved)
+        yield pack(np.nan_to_num(corner.imag), solved)
 
 
 def _shown(course: ComplexArray, pack: Pack) -> PackedColumn:
@@ -460,8 +460,8 @@ def _tracks(motion: Motion, scene: MovingScene) -> Iterator[_Track]:
             if start in places and end in places:
                 along = places[end] - places[start]
                 along /= abs(along)
-                own = scene.frames.points[guide.point]
-                path = np.broadcast_to(own, (len(motion),))[rows, None]
+                guide_path = scene.frames.points[guide.point]
+                path = np.broadcast_to(guide_path, (len(motion),))[rows, None]
                 local = scene.frames.local(frame, path, rows)[:, 0]
                 order = np.argsort((local * along.conjugate()).real)
                 ends = complex(local[order[0]]), complex(local[order[-1]])
@@ -483,38 +483,38 @@ def tracks_of(motion: Motion, scene: MovingScene) -> Iterator[TrackData]:
 def _rigid_points(motion: Motion, scene: MovingScene, frame: Frame) -> dict[int, complex]:
     """Points that are constant in a frame, by index, and where they are in it."""
     rows = np.flatnonzero(scene.found)
-    size, found = scene.scene.measures.size, {}
+    size, rigid = scene.scene.measures.size, {}
     for k, name in enumerate(motion.points):
-        own = np.broadcast_to(scene.frames.points[name], (len(motion),))[rows, None]
-        local = scene.frames.local(frame, own, rows)[:, 0]
+        path = np.broadcast_to(scene.frames.points[name], (len(motion),))[rows, None]
+        local = scene.frames.local(frame, path, rows)[:, 0]
         if np.abs(local - local[0]).max() <= 1e-9 * size:
-            found[k] = complex(local[0])
-    return found
+            rigid[k] = complex(local[0])
+    return rigid
 
 
 def _holding(motion: Motion, scene: MovingScene, part: Moving) -> dict[int, complex]:
     """The points that corners of a part can move with: those of its frame, and ends of tracks."""
     assert part.frame is not None
-    first, ends, own = len(motion.points), dict[int, complex](), False
+    first, ends, of_track = len(motion.points), dict[int, complex](), False
     for k, track in enumerate(_tracks(motion, scene)):
         if track.frame == part.frame and (
             part.shape.of == track.name or part.shape.role is Role.LINK
         ):
             ends |= {first + 2 * k: track.ends[0], first + 2 * k + 1: track.ends[1]}
-            own |= part.shape.of == track.name
-    return ends if own else _rigid_points(motion, scene, part.frame) | ends
+            of_track |= part.shape.of == track.name
+    return ends if of_track else _rigid_points(motion, scene, part.frame) | ends
 
 
 def _local(scene: MovingScene, part: Moving) -> ComplexArray:
     """The corners of a part in its frame."""
     assert part.frame is not None
-    own = np.array([complex(*place) for place in places_of(part.shape)])
-    local: ComplexArray = scene.frames.local(part.frame, own[None], np.array([scene.row]))[0]
+    corners = np.array([complex(*place) for place in places_of(part.shape)])
+    local: ComplexArray = scene.frames.local(part.frame, corners[None], np.array([scene.row]))[0]
     return local
 
 
 def anchors_of(motion: Motion, scene: MovingScene, part: Moving) -> tuple[int, ...]:
-    """The points of its frame that the corners of a part move with; none of an arrow or a path."""
+    """The points with which the corners of a part move; none of an arrow or a path."""
     if part.frame is None or part.shape.role in (Role.TRACE, Role.INPUT):
         return ()
     rigid = _holding(motion, scene, part)

@@ -50,30 +50,30 @@ from linkwork.writers.charts.columns import lead_of, rate_label, size_label
 _MOST_NUMBERED = 5  # quantities with numbers of the motion by default
 
 
-def columns_of(motion: Motion, pack: Pack, asked: Sequence[str] = ()) -> Iterator[Column]:
-    """Inputs, unknowns, outputs and derived quantities, then those asked for by name.
+def columns_of(motion: Motion, pack: Pack, requested: Sequence[str] = ()) -> Iterator[Column]:
+    """Inputs, unknowns, outputs and derived quantities, then those requested by name.
 
     Names that the mechanism does not have, and numbers of motions, are left out.
     """
-    found = motion.found
+    solved = motion.found
     for name, values in motion.inputs.items():
         yield Column(
             name=name,
             shown=printed_name(name),
             unit=motion.input_units[name],
             group="input",
-            values=pack(values, found),
+            values=pack(values, solved),
             first=None,
             first_unit="",
         )
     groups = dict(usual_columns(motion))
     for name, group in groups.items():
         yield _column(motion, motion.quantity(name), group, pack)
-    given = {*motion.inputs, *groups}
-    for name in dict.fromkeys(asked):
-        quantity = _asked_quantity(motion, name)
-        if isinstance(quantity, Asked) and quantity.name not in given:
-            given.add(quantity.name)
+    shown = {*motion.inputs, *groups}
+    for name in dict.fromkeys(requested):
+        quantity = _quantity_named(motion, name)
+        if isinstance(quantity, Asked) and quantity.name not in shown:
+            shown.add(quantity.name)
             yield _column(motion, quantity, "asked", pack)
 
 
@@ -82,53 +82,53 @@ def usual_columns(motion: Motion) -> Iterator[tuple[str, str]]:
     yield from ((name, "unknown") for name in (*motion.unknowns, *motion.riding))
     yield from ((name, "output") for name in motion.outputs)
     traced = motion.skeleton.traced
-    for name, asked in motion.quantities.derived.items():
-        if asked.row is not None and (not asked.row.of_path or asked.part in traced):
+    for name, quantity in motion.quantities.derived.items():
+        if quantity.row is not None and (not quantity.row.of_path or quantity.part in traced):
             yield name, "derived"
 
 
 def reactions_of(motion: Motion) -> Iterator[ReactionData]:
     """The forces of pins and loads, whose components are columns."""
     numbers = {name: k for k, name in enumerate(motion.points)}
-    for name, asked in motion.quantities.derived.items():
+    for name, quantity in motion.quantities.derived.items():
         stem, _, axis = name.rpartition(".")
-        if asked.row is not None and asked.row.pin and axis == "x":
-            point, on, by = asked.row.pin
+        if quantity.row is not None and quantity.row.pin and axis == "x":
+            point, on, by = quantity.row.pin
             if point in numbers:
                 x, y = f"{stem}.x", f"{stem}.y"
                 yield ReactionData(point=numbers[point], on=on, by=by, x=x, y=y)
 
 
-def _column(motion: Motion, asked: Asked, group: str, pack: Pack) -> Column:
-    found, own, rate = motion.found, asked.own, asked.rate
+def _column(motion: Motion, quantity: Asked, group: str, pack: Pack) -> Column:
+    solved, base, rate = motion.found, quantity.own, quantity.rate
     bounded = rate is None
-    plain = bounded and asked.group is not Group.EVIDENCE
-    series = motion.series(asked.name) if plain else None
-    values = motion[asked.name].astype(float) if series is None else series.value
-    first = None if series is None or asked.needs > 1 else series.first
+    plain = bounded and quantity.group is not Group.EVIDENCE
+    series = motion.series(quantity.name) if plain else None
+    values = motion[quantity.name].astype(float) if series is None else series.value
+    first = None if series is None or quantity.needs > 1 else series.first
     band: tuple[float, ...] = ()
-    if bounded and asked.row is TRANSMISSION_ANGLE:
+    if bounded and quantity.row is TRANSMISSION_ANGLE:
         band = tuple(bound / motion.units.angle.radians for bound in RECOMMENDED)
     return Column(
-        name=asked.name,
-        shown=_label(motion, asked),
-        unit=asked.unit,
+        name=quantity.name,
+        shown=_label(motion, quantity),
+        unit=quantity.unit,
         group=group,
-        values=pack(values, found, rate=not bounded),
-        first=None if first is None else pack(first, found, rate=True),
-        first_unit=Rate.FIRST.unit(own.kind, motion.units, motion.derivative_unit),
+        values=pack(values, solved, rate=not bounded),
+        first=None if first is None else pack(first, solved, rate=True),
+        first_unit=Rate.FIRST.unit(base.kind, motion.units, motion.derivative_unit),
         band=band,
     )
 
 
-def _label(motion: Motion, asked: Asked) -> str:
-    if asked.rate is None:
-        return printed_name(asked.name)
-    label = size_label if asked.group is Group.POINT else rate_label
-    return label(asked.own.name, asked.rate, lead_of(motion))
+def _label(motion: Motion, quantity: Asked) -> str:
+    if quantity.rate is None:
+        return printed_name(quantity.name)
+    label = size_label if quantity.group is Group.POINT else rate_label
+    return label(quantity.own.name, quantity.rate, lead_of(motion))
 
 
-def _asked_quantity(motion: Motion, name: str) -> Asked | None:
+def _quantity_named(motion: Motion, name: str) -> Asked | None:
     """A quantity or rate by name; ``None`` if the mechanism or this motion does not have it."""
     try:
         return motion.quantity(name)
@@ -136,14 +136,14 @@ def _asked_quantity(motion: Motion, name: str) -> Asked | None:
         return None
 
 
-def numbers_of(motion: Motion, asked: Sequence[str] = ()) -> Iterator[MotionNumber]:
+def numbers_of(motion: Motion, requested: Sequence[str] = ()) -> Iterator[MotionNumber]:
     """Stroke and time ratio of outputs and unknowns, lengths of traced paths, then numbers of the
-    motion asked for by name; names that the mechanism does not have are left out.
+    motion requested by name; names that the mechanism does not have are left out.
     """
     moving = [*motion.outputs, *motion.unknowns][:_MOST_NUMBERED]
-    usual = [f"{own.word}({name})" for name in moving for own in (*STROKE, *TIME_RATIO)]
-    usual += [f"{own.word}({point})" for point in motion.skeleton.traced for own in PATH_LENGTH]
-    for name in dict.fromkeys([*usual, *asked]):
+    usual = [f"{form.word}({name})" for name in moving for form in (*STROKE, *TIME_RATIO)]
+    usual += [f"{form.word}({point})" for point in motion.skeleton.traced for form in PATH_LENGTH]
+    for name in dict.fromkeys([*usual, *requested]):
         try:
             quantity = motion.quantities.find_of_motion(name)
             value = motion.value(name)
@@ -191,10 +191,10 @@ def _measure(motion: Motion, question: Question) -> tuple[str, bool]:
             return unit, unit == motion.units.angle.value
         if question.at is None:
             return motion.quantities.find_of_motion(answer).unit, False
-        asked = motion.quantity(answer)
+        quantity = motion.quantity(answer)
     except InputError:  # such as a rate by time without a speed
         return "", False
-    return asked.unit, asked.rate is None and asked.own.kind is Kind.ANGLE
+    return quantity.unit, quantity.rate is None and quantity.own.kind is Kind.ANGLE
 
 
 def answers_of(motion: Motion) -> Iterator[AnswerData]:
@@ -212,8 +212,8 @@ def _values(motion: Motion, question: Question) -> tuple[float, ...]:
     if not isinstance(answer, str):
         return (float(answer),)
     if answer in LIMITS:
-        found = (limit for limit in motion.limits if limit.kind.name == LIMITS[answer])
-        return tuple(limit.input if limit.located else math.nan for limit in found)
+        limits = (limit for limit in motion.limits if limit.kind.name == LIMITS[answer])
+        return tuple(limit.input if limit.located else math.nan for limit in limits)
     try:
         if question.at is None:
             return (motion.value(answer),)
@@ -275,9 +275,9 @@ def _around(
     at = next((name for name in names if abs(pose.points[name] - start) <= near), None)
     place: ComplexArray = np.full(len(next(iter(ways.values()))), start) if at is None else ways[at]
     for edge in edges:
-        vector, own = moving[id(edge.vector)], id(edge.vector) in left
-        after = place + (vector.values if own else -vector.values)
-        ends = (after, place) if own == vector.backwards else (place, after)
+        vector, in_left = moving[id(edge.vector)], id(edge.vector) in left
+        after = place + (vector.values if in_left else -vector.values)
+        ends = (after, place) if in_left == vector.backwards else (place, after)
         yield vector.name, *ends
         place = after
 
@@ -370,21 +370,21 @@ def drawn_page(
     loops: Loops | None = None,
     forces: Sequence[Force] = (),
     pack: Pack = packed,
-    asked: Sequence[str] = (),
+    requested: Sequence[str] = (),
     brief: bool = False,
     rates: bool = True,
 ) -> PageData:
     """The data of a page from drawn motions.
 
     ``pack`` writes the columns: :func:`~linkwork.app.pages.packing.unpressed` is fast, for a page
-    that is replaced soon, but eight times as large. ``asked`` are further quantities, rates and
+    that is replaced soon, but eight times as large. ``requested`` are further quantities, rates and
     numbers of motions by name; ``brief``: no numbers of motions; without ``rates``: empty columns
     for the rates of points.
     """
     check_forces(forces, next(iter(motions.values())).points)
     first, measures = next(iter(motions.values())), scenes[0].scene.measures
     views = [scene.view.grown(MARGIN * measures.size) for scene in scenes]
-    view = Box.around(corner for own in views for corner in own.corners)
+    view = Box.around(corner for box in views for corner in box.corners)
     lead = next(iter(first.inputs))
     light, dark = themes()
     return PageData(
@@ -401,13 +401,13 @@ def drawn_page(
             replace(
                 _motion(name, motion, scene, () if loops is None else loops(motion), pack),
                 points=tuple(_points(motion, pack, rates)),
-                columns=tuple(columns_of(motion, pack, asked)),
+                columns=tuple(columns_of(motion, pack, requested)),
                 reactions=tuple(reactions_of(motion)),
-                numbers=() if brief else tuple(numbers_of(motion, asked)),
+                numbers=() if brief else tuple(numbers_of(motion, requested)),
                 answers=() if brief else tuple(answers_of(motion)),
-                view=own.edges,
+                view=box.edges,
             )
-            for (name, motion), scene, own in zip(motions.items(), scenes, views, strict=True)
+            for (name, motion), scene, box in zip(motions.items(), scenes, views, strict=True)
         ),
         light=light,
         dark=dark,
@@ -446,26 +446,26 @@ def _motion(
 
 def _summary(motion: Motion) -> str:
     """``361 positions found, each proved``."""
-    found, proved = int(motion.found.sum()), int(motion.certified.sum())
-    text = f"{found} of {len(motion)} positions found"
-    if proved == found:
+    solved, proved = int(motion.found.sum()), int(motion.certified.sum())
+    text = f"{solved} of {len(motion)} positions found"
+    if proved == solved:
         return f"{text}, each proved"
     return f"{text}, {proved} proved" if proved else text
 
 
 def _points(motion: Motion, pack: Pack, rates: bool) -> Iterator[PointData]:
-    still, found = set(motion.skeleton.fixed), motion.found
+    still, solved = set(motion.skeleton.fixed), motion.found
 
     def rate(values: Array) -> PackedColumn:
-        return pack(values, found, rate=True) if rates else _NO_COLUMN
+        return pack(values, solved, rate=True) if rates else _NO_COLUMN
 
     for name, (x, y) in motion.points.items():
         yield PointData(
             name=name,
             shown=printed_name(name),
             drawn=name not in still,
-            x=pack(x.value, found),
-            y=pack(y.value, found),
+            x=pack(x.value, solved),
+            y=pack(y.value, solved),
             dx=rate(x.first),
             dy=rate(y.first),
             ddx=rate(x.second),
@@ -480,12 +480,12 @@ def _forces(motion: Motion, forces: Sequence[Force]) -> Iterator[ForceData]:
 
 
 def _evidence(motion: Motion, pack: Pack) -> RowEvidence:
-    found, every = motion.found, np.ones(len(motion), dtype=bool)
+    solved, every = motion.found, np.ones(len(motion), dtype=bool)
     status, statuses = _numbered(motion.status)
     proof, proofs = _numbered(motion.certification)
     branch, branch_names = _numbered(motion.branch)
     return RowEvidence(
-        found=pack(found.astype(float), every, step=1.0),
+        found=pack(solved.astype(float), every, step=1.0),
         status=pack(status, every, step=1.0),
         status_texts=tuple(one.value for one in statuses),
         certification=pack(proof, every, step=1.0),
@@ -493,7 +493,7 @@ def _evidence(motion: Motion, pack: Pack) -> RowEvidence:
         certified=pack(motion.certified.astype(float), every, step=1.0),
         residual_log10=_log10(motion.residual, motion, pack),
         radius_log10=_log10(motion.radius, motion, pack),
-        iterations=pack(motion.iterations.astype(float), found, step=1.0),
+        iterations=pack(motion.iterations.astype(float), solved, step=1.0),
         branch=pack(branch, every, step=1.0),
         branch_names=branch_names,
     )

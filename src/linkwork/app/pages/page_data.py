@@ -38,7 +38,7 @@ __all__ = [
 
 @dataclass(frozen=True, kw_only=True)
 class PackedColumn:
-    """Numbers of the found rows: multiples of ``step``, differenced ``order`` times, as zigzag
+    """Numbers of the solved rows: multiples of ``step``, differenced ``order`` times, as zigzag
     integers of seven bits per byte, in base64. Order -1: plain little-endian floats of eight bytes;
     -2: of four. ``gaps`` are indices of rows without a number, such as derivatives at dead points;
     plain floats have NaN there.
@@ -220,8 +220,8 @@ class AnswerData:
 class MotionData:
     """One displayed circuit or branch.
 
-    ``order`` are the found rows in the order of the motion; ``closed``: the first follows the last.
-    ``speed`` is that of the leading input, 0 if it has none; ``backwards``: its arrow points
+    ``order`` are the solved rows in the order of the motion; ``closed``: the first follows the
+    last. ``speed`` is that of the leading input, 0 if it has none; ``backwards``: its arrow points
     towards smaller values. ``view`` is the extent of its drawing, as that of the page.
     """
 

@@ -44,14 +44,14 @@ class TaskBench(OpenedFile):
     solve : callable
         Solves a task.
     suggesting : callable, optional
-        Imports what suggests designs.
+        Imports the module that suggests designs.
 
     Attributes
     ----------
     cycle : TaskCycle
         The task and its designs.
     suggestions : Suggestions
-        Designs that the search has not found.
+        Designs from outside the search.
     """
 
     def __init__(
@@ -65,8 +65,8 @@ class TaskBench(OpenedFile):
         self._signs: WorkSign = NoSign()
         self.cycle = TaskCycle(solve, file.name, Path(file.name).parent)
         self._take(file.text)
-        self._dragged = ""  # what a drag moves
-        self._latest: tuple[str, str] | None = None  # its last text, and what it is called
+        self._dragged = ""  # the object of a drag
+        self._latest: tuple[str, str] | None = None  # its last text and its title
 
     @property
     def text(self) -> str:
@@ -87,7 +87,7 @@ class TaskBench(OpenedFile):
         if not len(self.suggestions):
             return []
         chosen = FIRST if self.suggestions.chosen is None else self.suggestions.chosen
-        return [self.suggestions.listed(), self.suggestions.found(chosen)]
+        return [self.suggestions.listed(), self.suggestions.in_motion(chosen)]
 
     def _take(self, text: str) -> None:
         self.cycle.take(text)
@@ -98,7 +98,7 @@ class TaskBench(OpenedFile):
         if not live:
             self._signs.show([self._state(), *self._suggested()])
         events, chosen = self.cycle.events(live=live), self.suggestions.chosen
-        looked = None if chosen is None else self.suggestions.found(chosen)
+        looked = None if chosen is None else self.suggestions.in_motion(chosen)
         if looked is not None:
             events = [
                 replace(event, chosen=looked) if isinstance(event, TaskSolved) else event
@@ -126,7 +126,7 @@ class TaskBench(OpenedFile):
         Raises
         ------
         InputError
-            If there is no such design.
+            If the design does not exist.
         """
         if index <= FIRST:
             description, _, name = self.suggestions.description(index)
@@ -214,7 +214,7 @@ class TaskBench(OpenedFile):
     @_handle.register
     def _(self, request: do.FindNearest) -> Events:
         if not 1 <= request.count <= _MOST_NEAREST:
-            raise InputError(f"1 to {_MOST_NEAREST} designs are found, got {request.count}")
+            raise InputError(f"1 to {_MOST_NEAREST} designs can be requested, got {request.count}")
         try:
             return self.suggestions.find_nearest(self._complete(), request.count, self.cycle.go_on)
         except (GivenUpError, KeyboardInterrupt):
@@ -233,7 +233,7 @@ class TaskBench(OpenedFile):
         except MechanismError as error:
             raise InputError("; ".join(problem.message for problem in error.problems)) from None
         except (GivenUpError, KeyboardInterrupt):
-            raise InputError("the improvement was ended before it found anything") from None
+            raise InputError("the improvement was ended before its first design") from None
 
     def _improving(self, fraction: float) -> None:
         """Report progress; a change or a cancellation ends it with the best so far."""
@@ -250,10 +250,10 @@ class TaskBench(OpenedFile):
     @_handle.register
     def _(self, request: do.ShowCognates) -> Events:
         if request.design <= FIRST:
-            self.suggestions.found(request.design)
+            self.suggestions.in_motion(request.design)
             return [CognatesFound(design=request.design, cognates=(), curve=())]
         self.cycle.design(request.design)
-        return [cognates_found(self.cycle.found, request.design)]
+        return [cognates_found(self.cycle.synthesis, request.design)]
 
     @_handle.register
     def _(self, request: MakeLink) -> Events:

@@ -40,7 +40,7 @@ class SolveTask(Protocol):
 
 @dataclass(frozen=True, kw_only=True)
 class _Chosen:
-    """The design that the visitor looks at, found again after a change by its pivots."""
+    """The design that the visitor looks at, identified after a change by its pivots."""
 
     kind: str
     drive: str
@@ -50,9 +50,9 @@ class _Chosen:
     def of(cls, design: JudgedDesign) -> _Chosen | None:
         if not isinstance(design, SynthesizedDesign):
             return None  # other starts find other designs: the best one is shown
-        given, k = design.group.given, design.index
-        ends = [given.fixed_a[k], given.fixed_b[k], given.moving_a[k, 0], given.moving_b[k, 0]]
-        return cls(kind=given.kind.value, drive=design.drive.value, pivots=np.array(ends))
+        loops, k = design.group.candidates, design.index
+        ends = [loops.fixed_a[k], loops.fixed_b[k], loops.moving_a[k, 0], loops.moving_b[k, 0]]
+        return cls(kind=loops.kind.value, drive=design.drive.value, pivots=np.array(ends))
 
 
 class TaskCycle:
@@ -82,7 +82,7 @@ class TaskCycle:
         self.working: Callable[[float], None] = lambda fraction: None
         self.owed = False
         self._solve, self._name, self._folder = solve, name, folder
-        self._found: Synthesis | None = None
+        self._synthesis: Synthesis | None = None
         self._chosen: _Chosen | None = None
         self._index: int | None = None
         self._took = 0.0  # the last search [s]
@@ -90,7 +90,7 @@ class TaskCycle:
 
     def take(self, text: str) -> None:
         """Continue with a changed text."""
-        self._found, self.owed = None, False
+        self._synthesis, self.owed = None, False
         tables, task = self.sketch.tables, None
         problems: tuple[ProblemShown, ...] = ()
         try:
@@ -103,7 +103,7 @@ class TaskCycle:
         self.sketch = TaskSketch(tables=tables, task=task, problems=problems)
 
     @property
-    def found(self) -> Synthesis:
+    def synthesis(self) -> Synthesis:
         """The designs.
 
         Raises
@@ -111,9 +111,9 @@ class TaskCycle:
         InputError
             If there are none, or not yet.
         """
-        if self._found is None:
+        if self._synthesis is None:
             raise InputError("this task is not solved: complete it, or solve it again")
-        return self._found
+        return self._synthesis
 
     def design(self, index: int) -> JudgedDesign:
         """A design by its place in the list.
@@ -123,9 +123,9 @@ class TaskCycle:
         InputError
             If there is none.
         """
-        if not 0 <= index < len(self.found.designs):
+        if not 0 <= index < len(self.synthesis.designs):
             raise InputError(f"there is no design {index + 1}: the task has been solved again")
-        return self.found.designs[index]
+        return self.synthesis.designs[index]
 
     def events(self, *, live: bool = False) -> Events:
         """Solve the task, and find the chosen design again.
@@ -136,11 +136,11 @@ class TaskCycle:
         if task is None:
             return [self._unsolved(live, "The task is not complete.", self.sketch.problems)]
         if live and self._took > _WHILE_DRAGGED:
-            return [self._unsolved(live, "Designs are found when the drag ends.", slow=True)]
+            return [self._unsolved(live, "Designs are solved when the drag ends.", slow=True)]
         try:
-            if self._found is None:
+            if self._synthesis is None:
                 begun = time.perf_counter()
-                self._found = self._solve(task, progress=self.go_on)
+                self._synthesis = self._solve(task, progress=self.go_on)
                 self._took = time.perf_counter() - begun
         except (GivenUpError, KeyboardInterrupt):
             self.owed = True
@@ -153,9 +153,9 @@ class TaskCycle:
         except InputError as error:
             return [self._unsolved(live, str(error))]
         self.owed = False
-        self._index = self._found_again()
-        chosen = None if self._index is None else design_found(self._found, self._index)
-        return [task_solved(self._found, chosen, live=live)]
+        self._index = self._same_design()
+        chosen = None if self._index is None else design_found(self._synthesis, self._index)
+        return [task_solved(self._synthesis, chosen, live=live)]
 
     def end(self) -> Events:
         """Do not solve the task now."""
@@ -168,25 +168,25 @@ class TaskCycle:
         """Look at a design from now on."""
         self._chosen = _Chosen.of(self.design(index))
         self._index = index
-        return [design_found(self.found, index)]
+        return [design_found(self.synthesis, index)]
 
-    def _found_again(self) -> int | None:
+    def _same_design(self) -> int | None:
         """The place of the chosen design after a change; by default the best one."""
-        designs = self.found.designs
+        designs = self.synthesis.designs
         if not designs:
             return None
-        chosen = self._chosen
-        index = (
-            None if chosen is None else alike(self.found, chosen.kind, chosen.drive, chosen.pivots)
-        )
+        chosen, solved = self._chosen, self.synthesis
+        index = None
+        if chosen is not None:
+            index = alike(solved, chosen.kind, chosen.drive, chosen.pivots)
         if index is None:
-            index = next(iter(() if self.found.sound else near_misses(self.found)), 0)
+            index = next(iter(() if self.synthesis.sound else near_misses(self.synthesis)), 0)
         self._chosen = _Chosen.of(designs[index])
         return index
 
     def go_on(self, fraction: float) -> None:
-        """Report progress, or end the work: where it is only cancelled, solvers that can do so
-        keep what they have.
+        """Report progress, or end the work. Where the work is only cancelled, solvers that can do
+        so keep their results so far.
         """
         hurry = self.hurried()
         if hurry == Hurry.STOP:

@@ -67,7 +67,7 @@ def mechanism_found(
     """A design with the rows of its table that have a position; ``point`` draws its path,
     ``inputs`` are those at the positions, by default the improved ones.
     """
-    found = DesignFound(
+    event = DesignFound(
         design=shown,
         skeleton=None,
         fixed=(),
@@ -80,15 +80,15 @@ def mechanism_found(
     )
     motion = design.improved.motion
     if motion is None or not motion.found.any():
-        return found
-    own = np.flatnonzero(motion.found)
-    rows = own[np.linspace(0, len(own) - 1, min(_ROWS, len(own))).round().astype(int)]
+        return event
+    solved = np.flatnonzero(motion.found)
+    rows = solved[np.linspace(0, len(solved) - 1, min(_ROWS, len(solved))).round().astype(int)]
     names = list(motion.points)
     places = np.array([motion.trace(name)[rows] for name in names])
     table = np.stack([places.real, places.imag], axis=1).reshape(2 * len(names), len(rows))
     traced = point or next(iter(motion.skeleton.traced), "")
     return replace(
-        found,
+        event,
         skeleton=_skeleton(motion.skeleton, names),
         guided=traced,
         rows=tuple(map(tuple, table.T.tolist())),
@@ -151,89 +151,89 @@ _CHORD, _FINEST = 0.01, 50.0  # with more between them if they are farther apart
 _CENTRE_CURVE = 240  # lines through the pole for each arc
 _INSIDE = 1e-9  # of an arc: at its very ends rounding may leave no point
 _FAR = 30.0  # sizes of the task: the centre-point curve goes to infinity
-_COGNATE = 1e-6  # relative: the same pivots, found in two ways
+_COGNATE = 1e-6  # relative: the same pivots, solved in two ways
 _MOST_DYADS = 200
 
 
-def task_solved(found: Synthesis, chosen: DesignFound | None, *, live: bool) -> TaskSolved:
-    """The counts and the list; ``live``: without the list and what a wish costs."""
-    listed = [] if live else _listed(found, chosen)
-    # to find what a wish costs takes longer than a drag waits
-    wish, costs = (None if live or found.sound else found.costliest) or ("", 0)
-    solutions = f"{found.complex} complex, {found.real} real, {found.proved} proved"
-    if found.starts:
-        solutions = f"{found.real} fits from {found.starts} starts"
+def task_solved(synthesis: Synthesis, chosen: DesignFound | None, *, live: bool) -> TaskSolved:
+    """The counts and the list; ``live``: without the list and the most restrictive requirement."""
+    listed = [] if live else _listed(synthesis, chosen)
+    # to judge without requirements takes longer than a drag waits
+    wish, costs = (None if live or synthesis.sound else synthesis.most_restrictive) or ("", 0)
+    solutions = f"{synthesis.complex} complex, {synthesis.real} real, {synthesis.proved} proved"
+    if synthesis.starts:
+        solutions = f"{synthesis.real} fits from {synthesis.starts} starts"
     return TaskSolved(
         live=live,
         solutions=solutions,
-        linkages=found.linkages,
-        count=len(found.designs),
-        sound=found.sound,
-        delivered=len(found.delivered),
-        completeness=found.completeness.name,
-        message=found.message,
-        interrupted=found.interrupted,
-        error_unit=found.error_unit,
-        defects={kind.value: count for kind, count in found.defects.items()},
+        linkages=synthesis.linkages,
+        count=len(synthesis.designs),
+        sound=synthesis.sound,
+        delivered=len(synthesis.delivered),
+        completeness=synthesis.completeness.name,
+        message=synthesis.message,
+        interrupted=synthesis.interrupted,
+        error_unit=synthesis.error_unit,
+        defects={kind.value: count for kind, count in synthesis.defects.items()},
         costliest=wish,
         costs=costs,
-        advice="" if live else advice_of(found),
-        designs=tuple(design_shown(found.designs[k], k) for k in listed),
-        left_out=len(found.designs) - len(listed),
+        advice="" if live else advice_of(synthesis),
+        designs=tuple(design_shown(synthesis.designs[k], k) for k in listed),
+        left_out=len(synthesis.designs) - len(listed),
         dyads=tuple(
             DyadShown(kind=dyad.kind, fixed=dyad.fixed, proved=dyad.proved)
-            for dyad in (() if live else found.dyads[:_MOST_DYADS])
+            for dyad in (() if live else synthesis.dyads[:_MOST_DYADS])
         ),
-        centre_curve=centre_curve(found.task),
+        centre_curve=centre_curve(synthesis.task),
         chosen=chosen,
     )
 
 
-def _listed(found: Synthesis, chosen: DesignFound | None) -> list[int]:
+def _listed(solved: Synthesis, chosen: DesignFound | None) -> list[int]:
     """The places of the best sound designs, then those of refused ones: near misses first."""
-    refused = dict.fromkeys([*near_misses(found), *range(found.sound, len(found.designs))])
-    own = [*range(min(found.sound, _MOST_SOUND)), *[*refused][:_MOST_REFUSED]]
+    refused = dict.fromkeys([*near_misses(solved), *range(solved.sound, len(solved.designs))])
+    shown = [*range(min(solved.sound, _MOST_SOUND)), *[*refused][:_MOST_REFUSED]]
     # the chosen one is not left out
-    return [*dict.fromkeys(own if chosen is None else [*own, chosen.design.index])]
+    return [*dict.fromkeys(shown if chosen is None else [*shown, chosen.design.index])]
 
 
-def design_found(found: Synthesis, index: int) -> DesignFound:
+def design_found(synthesis: Synthesis, index: int) -> DesignFound:
     """A design at the positions, and moving through its driven range if it is sound."""
-    design = found.designs[index]
+    design = synthesis.designs[index]
     if isinstance(design, SweptDesign):
         return mechanism_found(design, design_shown(design, index), inputs=design.inputs)
     assert isinstance(design, SynthesizedDesign)
     group, k = design.group, design.index
-    own, drive = group.given.take(slice(k, k + 1)), group.drive
+    candidate, drive = group.candidates.take(slice(k, k + 1)), group.drive
     one = np.array([k])
     loops, travel = group.verdicts.loops.take(one), group.verdicts.travel
-    at = (own.moving_a[0], own.moving_b[0], own.guided[0])
+    at = (candidate.moving_a[0], candidate.moving_b[0], candidate.guided[0])
     rows: tuple[tuple[float, ...], ...] = ()
     marks: tuple[float, ...] = ()
     if not design.kinds:
         first, last = float(travel.first[k]), float(travel.last[k])
         place = np.linspace(first, last, _ROWS)
-        rows = _rows(*(part[0] for part in pivots_at(own, drive, loops, place[None])))
+        rows = _coordinates(*(part[0] for part in pivots_at(candidate, drive, loops, place[None])))
         span = (last - first) or 1.0
         marks = tuple(((travel.place[k] - first) / span * (_ROWS - 1)).tolist())
     return DesignFound(
         design=design_shown(design, index),
         skeleton=None,
-        fixed=tuple(_fixed(own, at)),
+        fixed=tuple(_fixed(candidate, at)),
         guided=next((name for name, z in zip("AB", at, strict=False) if z[0] == at[2][0]), "P"),
-        lines=_lines(own),
-        at=_rows(*at),
+        lines=_lines(candidate),
+        at=_coordinates(*at),
         rows=rows,
         marks=marks,
-        curve=_curve(own, drive, loops),
+        curve=_curve(candidate, drive, loops),
     )
 
 
-def _fixed(own: Candidates, at: tuple[ComplexArray, ...]) -> Iterator[tuple[Point, ...]]:
+def _fixed(loops: Candidates, at: tuple[ComplexArray, ...]) -> Iterator[tuple[Point, ...]]:
     """Of A and of B: the fixed pivot, or two points of the fixed line."""
-    sides = ("A0", own.fixed_a, own.direction_a), ("B0", own.fixed_b, own.direction)
+    sides = (("A0", loops.fixed_a, loops.direction_a), ("B0", loops.fixed_b, loops.direction))
     for (pivot, (start,), (direction,)), moving in zip(sides, at[:2], strict=True):
-        if pivot in own.kind.pivots:
+        if pivot in loops.kind.pivots:
             yield (_point(start),)
             continue
         along = ((moving - start) * direction.conj()).real
@@ -242,42 +242,42 @@ def _fixed(own: Candidates, at: tuple[ComplexArray, ...]) -> Iterator[tuple[Poin
         yield tuple(_point(start + end * direction) for end in ends)
 
 
-def _lines(own: Candidates) -> tuple[float | None, float | None]:
+def _lines(loops: Candidates) -> tuple[float | None, float | None]:
     """The directions of the coupler's lines through A0 and B0 from that of AB [rad]."""
-    coupler = own.moving_b[0, 0] - own.moving_a[0, 0]
-    one, other = (float(np.angle(line[0, 0] / coupler)) for line in (own.lines_a, own.lines))
-    return one if own.kind is LoopKind.OLDHAM else None, other if own.kind.body_line else None
+    coupler = loops.moving_b[0, 0] - loops.moving_a[0, 0]
+    one, other = (float(np.angle(line[0, 0] / coupler)) for line in (loops.lines_a, loops.lines))
+    return (one if loops.kind is LoopKind.OLDHAM else None, other if loops.kind.body_line else None)
 
 
-def _rows(*parts: ComplexArray) -> tuple[tuple[float, ...], ...]:
+def _coordinates(*parts: ComplexArray) -> tuple[tuple[float, ...], ...]:
     """Rows of x, y of each part (K,); rows without a position are left out."""
     table = np.stack([number for part in parts for number in (part.real, part.imag)], axis=1)
     return tuple(map(tuple, table[np.isfinite(table).all(axis=1)].tolist()))
 
 
-def _curve(own: Candidates, drive: Drive, loops: object) -> tuple[tuple[float, ...], ...]:
+def _curve(candidates: Candidates, drive: Drive, loops: object) -> tuple[tuple[float, ...], ...]:
     """The guided point on the branch of the first position, in pieces x, y, x, y, …"""
     if not drive.turns:
-        place = np.linspace(*_slider_range(own), _CURVE)
+        place = np.linspace(*_slider_range(candidates), _CURVE)
     else:
         place = np.linspace(-np.pi, np.pi, _CURVE)
 
     def guided(at: Array) -> ComplexArray:
-        return np.asarray(pivots_at(own, drive, loops, at[None])[2][0])  # type: ignore[arg-type]
+        return np.asarray(pivots_at(candidates, drive, loops, at[None])[2][0])  # type: ignore[arg-type]
 
     points = guided(place)
-    found = points[np.isfinite(points)]
-    size = float(max(np.ptp(found.real), np.ptp(found.imag))) if len(found) else 0.0
-    # more of them where the point is fast
+    finite = points[np.isfinite(points)]
+    size = float(max(np.ptp(finite.real), np.ptp(finite.imag))) if len(finite) else 0.0
+    # more points where the point is fast
     parts = np.ceil(np.nan_to_num(np.abs(np.diff(points))) / (_CHORD * size or np.inf))
     number = np.concatenate([[0.0], np.cumsum(np.clip(parts, 1.0, _FINEST))])
     denser = np.interp(np.arange(number[-1] + 1.0), number, place)
     return tuple(pieces(guided(denser)))
 
 
-def _slider_range(own: Candidates) -> tuple[float, float]:
-    other = own.fixed_a if own.kind.has_crank else own.fixed_b
-    reach = abs(own.moving_a[0, 0] - other[0]) + abs(own.moving_b[0, 0] - own.moving_a[0, 0])
+def _slider_range(loops: Candidates) -> tuple[float, float]:
+    other = loops.fixed_a if loops.kind.has_crank else loops.fixed_b
+    reach = abs(loops.moving_a[0, 0] - other[0]) + abs(loops.moving_b[0, 0] - loops.moving_a[0, 0])
     return -float(reach), float(reach)
 
 
@@ -285,19 +285,19 @@ def _point(z: complex) -> Point:
     return float(z.real), float(z.imag)
 
 
-def alike(found: Synthesis, kind: str, drive: str, pivots: ComplexArray) -> int | None:
+def alike(synthesis: Synthesis, kind: str, drive: str, pivots: ComplexArray) -> int | None:
     """The design of a kind whose pivots (4,) are nearest to those of another one, sound ones first;
     ``None`` without designs.
     """
     best: tuple[bool, float, int] | None = None
-    of_loops = [(k, d) for k, d in enumerate(found.designs) if isinstance(d, SynthesizedDesign)]
+    of_loops = [(k, d) for k, d in enumerate(synthesis.designs) if isinstance(d, SynthesizedDesign)]
     groups = {id(design.group): design.group for _, design in of_loops}
     distances: dict[int, Array] = {}
     for name, group in groups.items():
-        given = group.given
-        own = [given.fixed_a, given.fixed_b, given.moving_a[:, 0], given.moving_b[:, 0]]
-        off = np.abs(np.stack(own, axis=1) - pivots).sum(axis=1)
-        other = (given.kind.value, group.drive.value) != (kind, drive)
+        loops = group.candidates
+        ends = [loops.fixed_a, loops.fixed_b, loops.moving_a[:, 0], loops.moving_b[:, 0]]
+        off = np.abs(np.stack(ends, axis=1) - pivots).sum(axis=1)
+        other = (loops.kind.value, group.drive.value) != (kind, drive)
         distances[name] = np.where(other, np.inf, off)
     for k, design in of_loops:
         off = float(distances[id(design.group)][design.index])
@@ -325,13 +325,13 @@ def nearest_on(task: Task, point: complex) -> complex:
     angle, width = float(np.angle(near - curve.pole)), np.pi / _CENTRE_CURVE
     for _ in range(8):
         angles = angle + np.linspace(-width, width, 33)
-        found = curve.points(angles)
-        off = np.abs(found - point)
+        on_curve = curve.points(angles)
+        off = np.abs(on_curve - point)
         if np.isnan(off).all():
             break
         k, side = np.unravel_index(np.nanargmin(off), off.shape)
         if off[k, side] <= abs(near - point):
-            near = found[k, side]
+            near = on_curve[k, side]
         angle, width = float(angles[k]), width / 8.0
     return complex(near)
 
@@ -369,22 +369,22 @@ def _continuous(sides: ComplexArray, size: float) -> Iterable[ComplexArray]:
         yield np.where(np.append(np.abs(np.diff(side)), 0.0) > size, np.nan, side)
 
 
-def cognates_found(found: Synthesis, index: int) -> CognatesFound:
+def cognates_found(synthesis: Synthesis, index: int) -> CognatesFound:
     """A four-bar and its two cognates, each with its verdict if it is among the designs."""
-    design = found.designs[index]
+    design = synthesis.designs[index]
     if not isinstance(design, SynthesizedDesign):
         return CognatesFound(design=index, cognates=(), curve=())
-    own = design.group.given.take(slice(design.index, design.index + 1))
-    curve = design_found(found, index).curve
-    if own.kind is not LoopKind.FOUR_BAR or design.design.points["P"] in _joints(design):
+    loop = design.group.candidates.take(slice(design.index, design.index + 1))
+    curve = design_found(synthesis, index).curve
+    if loop.kind is not LoopKind.FOUR_BAR or design.design.points["P"] in _joints(design):
         return CognatesFound(design=index, cognates=(), curve=curve)
-    guided = own.guided[0, 0]
-    legs = [own.moving_a[0, 0], own.fixed_a[0], own.moving_b[0, 0], own.fixed_b[0]]
+    guided = loop.guided[0, 0]
+    legs = [loop.moving_a[0, 0], loop.fixed_a[0], loop.moving_b[0, 0], loop.fixed_b[0]]
     x, a, y, b = (z - guided for z in legs)
     linkage = np.array([[z for pair in ((w, w.conjugate()) for w in (x, a, y, b)) for z in pair]])
     rows = [linkage[0], *(part[0] for part in cognates(linkage))]
     shown = [
-        _cognate(found, {name: _point(row[2 * k] + guided) for k, name in enumerate(_LEGS)}
+        _cognate(synthesis, {name: _point(row[2 * k] + guided) for k, name in enumerate(_LEGS)}
                  | {"P": _point(guided)}, index if not place else None)
         for place, row in enumerate(rows)
         if np.isfinite(row).all()
@@ -400,18 +400,18 @@ def _joints(design: SynthesizedDesign) -> tuple[complex, ...]:
     return points["A"], points["B"]
 
 
-def _cognate(found: Synthesis, points: dict[str, Point], index: int | None) -> CognateShown:
+def _cognate(synthesis: Synthesis, points: dict[str, Point], index: int | None) -> CognateShown:
     """A cognate with the best verdict that the list has on it, in the names of its points."""
-    wanted = np.array([complex(*points[name]) for name in ("A0", "B0", "A", "B")])
-    size = np.abs(wanted - wanted.mean()).max()
-    for k in range(len(found.designs)) if index is None else (index,):
-        other = found.designs[k]
+    linkage = np.array([complex(*points[name]) for name in ("A0", "B0", "A", "B")])
+    size = np.abs(linkage - linkage.mean()).max()
+    for k in range(len(synthesis.designs)) if index is None else (index,):
+        other = synthesis.designs[k]
         if not isinstance(other, SynthesizedDesign):
             continue
-        given, j = other.group.given, other.index
-        ends = [given.fixed_a[j], given.fixed_b[j], given.moving_a[j, 0], given.moving_b[j, 0]]
+        loops, j = other.group.candidates, other.index
+        ends = [loops.fixed_a[j], loops.fixed_b[j], loops.moving_a[j, 0], loops.moving_b[j, 0]]
         for exchanged, order in enumerate(([0, 1, 2, 3], [1, 0, 3, 2])):
-            if np.abs(np.array(ends)[order] - wanted).max() < _COGNATE * size:
+            if np.abs(np.array(ends)[order] - linkage).max() < _COGNATE * size:
                 shown = design_shown(other, k)
                 drive = {"A0": "B0", "B0": "A0"}[shown.drive] if exchanged else shown.drive
                 return CognateShown(

@@ -24,7 +24,7 @@ Tables = Mapping[str, Any]
 class TaskSketch:
     """The tables of a task, with the checked task if it is complete.
 
-    ``problems``: what keeps it from being complete.
+    ``problems``: why it is not complete.
     """
 
     tables: Tables
@@ -33,7 +33,7 @@ class TaskSketch:
 
     @property
     def kind(self) -> str:
-        """The kind of the task; "" if it is not given."""
+        """The kind of the task; "" without one."""
         return str(self.tables.get("task", ""))
 
     def state(self, file: str, text: str, history: History, *, unsaved: bool) -> TaskState:
@@ -87,10 +87,10 @@ def _shown(table: Any) -> PositionShown:
 
 def entry_of(tables: Tables, key: tuple[str, ...]) -> Any:
     """The entry at a path of keys; ``None`` if there is none."""
-    found: Any = tables
+    entry: Any = tables
     for part in key:
-        found = found.get(part) if isinstance(found, Mapping) else None
-    return found
+        entry = entry.get(part) if isinstance(entry, Mapping) else None
+    return entry
 
 
 def _number(entry: Any) -> float | None:
@@ -100,8 +100,8 @@ def _number(entry: Any) -> float | None:
 
 def _numbers_of(entry: Any, count: int) -> tuple[float, ...] | None:
     listed = [_number(part) for part in entry] if isinstance(entry, list) else []
-    found = [part for part in listed if part is not None]
-    return tuple(found) if len(listed) == len(found) == count else None
+    numbers = [part for part in listed if part is not None]
+    return tuple(numbers) if len(listed) == len(numbers) == count else None
 
 
 def _entries(tables: Tables, where: str) -> Iterator[tuple[str, float | str]]:
@@ -139,7 +139,7 @@ def edit_task(edit: do.TaskEdit, text: TextEdits, snap: Snap) -> None:
     Raises
     ------
     InputError
-        If there is no such thing; the text is then invalid.
+        If the entry does not exist; the text is then invalid.
     """
     raise TypeError(f"{type(edit).__name__} is not an edit of a task")
 

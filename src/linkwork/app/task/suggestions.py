@@ -1,4 +1,4 @@
-"""The designs that were suggested for a task: of the atlas, improved, or given by it."""
+"""The designs that were suggested for a task: of the atlas, improved, or its starting design."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from linkwork.synthesis.solvers.swept_design import SweptDesign
 from linkwork.synthesis.suggestion.suggesting import Origin, SuggestedDesign, Suggesting
 from linkwork.synthesis.tasks.task import Task
 
-FIRST = -2  # the index of the first suggested design; the others are below
+FIRST = -2  # the index of the first suggested design; further ones are below
 _CLOSES = 2.0  # largest steps: how near the ends of a closed curve are
 _OPEN = "The positions are no closed curve: paths are compared as if a straight line closed it."
 _SHAPE = "Paths of the atlas are compared by shape; timing and order of positions are not."
@@ -27,7 +27,7 @@ class Suggestions:
     Parameters
     ----------
     suggesting : callable
-        Imports what finds them, the first time it is needed.
+        Imports the module that makes them, at first use.
 
     Attributes
     ----------
@@ -39,7 +39,7 @@ class Suggestions:
         self._suggesting = suggesting
         self._designs: list[SuggestedDesign] = []
         self._judged: list[SweptDesign] = []
-        self._of: tuple[object, ...] | None = None  # whose mechanism is the given one
+        self._of: tuple[object, ...] | None = None  # whose mechanism is the starting design
         self._note = ""
         self.chosen: int | None = None
 
@@ -63,11 +63,11 @@ class Suggestions:
         """Replace the mechanism that a task improves, which is the first design."""
         self._designs = [d for d in self._designs if d.origin is not Origin.GIVEN]
         try:
-            given = self._suggesting().given(task)
+            start = self._suggesting().starting_design(task)
         except LinkworkError:
-            return  # the search says what is wrong with it
-        if given is not None:
-            self._designs.insert(0, given)
+            return  # the search reports its problems
+        if start is not None:
+            self._designs.insert(0, start)
 
     def find_nearest(self, task: Task, count: int, progress: Callable[[float], None]) -> Events:
         """Replace the designs of the atlas by those nearest to the positions.
@@ -78,14 +78,14 @@ class Suggestions:
             If the positions are no curve, or the atlas cannot be read.
         """
         try:
-            found = self._suggesting().nearest(task, count, progress)
+            nearest = self._suggesting().nearest(task, count, progress)
         except OSError:
             raise InputError(
                 "the atlas of paths cannot be loaded: check the connection, then try again"
             ) from None
         self._note = _SHAPE if _is_closed(task) else f"{_OPEN} {_SHAPE}"
         others = [design for design in self._designs if design.origin is not Origin.ATLAS]
-        self._designs = [*others, *found]
+        self._designs = [*others, *nearest]
         self.renew(task)
         first = len(others)
         sound = (k for k in range(first, len(self._judged)) if not self._judged[k].kinds)
@@ -103,27 +103,27 @@ class Suggestions:
         Raises
         ------
         InputError
-            If the task has nothing to improve towards, or nothing better is found.
+            If the task has no goal, or the search gives nothing better.
         """
-        found = self._suggesting().improved(task, description, mechanism, progress)
-        self._designs.append(found)
+        improved = self._suggesting().improved(task, description, mechanism, progress)
+        self._designs.append(improved)
         self.renew(task)
         return [self.listed(), *self.choose(FIRST - len(self._designs) + 1)]
 
     def listed(self) -> DesignsSuggested:
-        """All of them for the table."""
+        """All suggested designs for the table."""
         return DesignsSuggested(
             designs=tuple(self._shown()),
             note=self._note if any(d.origin is Origin.ATLAS for d in self._designs) else "",
         )
 
     def choose(self, index: int) -> Events:
-        """Look at one of them."""
+        """Choose a suggested design."""
         self.chosen = index
-        return [self.found(index)]
+        return [self.in_motion(index)]
 
-    def found(self, index: int) -> DesignFound:
-        """One of them in motion.
+    def in_motion(self, index: int) -> DesignFound:
+        """A suggested design in motion.
 
         Raises
         ------
@@ -134,7 +134,7 @@ class Suggestions:
         return mechanism_found(self._judged[k], [*self._shown()][k], self._designs[k].point)
 
     def description(self, index: int) -> tuple[Description, str, str]:
-        """One of them with its kind in words, and a name for it.
+        """A suggested design with its kind in words, and a name for it.
 
         Raises
         ------
@@ -143,13 +143,13 @@ class Suggestions:
         """
         design, shown = self._designs[self._place(index)], [*self._shown()][self._place(index)]
         name = f"{shown.origin} {shown.number}".replace("as given 1", "as given")
-        own = design.improved.description
-        return replace(own, name=f"{own.name}, {name}"), design.mechanism, name
+        description = design.improved.description
+        return replace(description, name=f"{description.name}, {name}"), design.mechanism, name
 
     def _place(self, index: int) -> int:
         k = FIRST - index
         if not 0 <= k < len(self._judged):
-            raise InputError("there is no such design any more: other ones have been found")
+            raise InputError("there is no such design any more: choose one of the new ones")
         return k
 
     def _shown(self) -> Iterator[DesignShown]:

@@ -1,4 +1,4 @@
-"""The files of Pyodide and of its packages: found or downloaded, and compared with known hashes."""
+"""The files of Pyodide and its packages: read or downloaded, and compared with known hashes."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ from linkwork.core.foundation.errors import InputError
 
 #: The packages among the files.
 PACKAGES = ("numpy", "tomlkit", "platformdirs")
-_OWN_LOCK = "lock.json"  # in a folder: hashes of files that are not the official ones
+_FOLDER_LOCK = "lock.json"  # in a folder: hashes of files that are not the official ones
 _PATIENCE = 60.0  # without an answer [s]
 _LARGEST = 50_000_000  # bytes of one file
 
@@ -33,7 +33,7 @@ Progress = Callable[[float], None]
 
 @dataclass(frozen=True)
 class LockedFile:
-    """A file, where it is found, and the hash of its content."""
+    """A file, its address, and the hash of its content."""
 
     file: str
     url: str
@@ -55,7 +55,7 @@ def pyodide_files(folder: Path | None = None, progress: Progress | None = None) 
     ----------
     folder : Path, optional
         A folder that contains the files; without it they are downloaded. A file ``lock.json`` there
-        (``{"numpy": {"file": …, "sha256": …}}``) replaces files by others, for tests.
+        (``{"numpy": {"file": …, "sha256": …}}``) replaces files, for tests.
     progress : callable, optional
 
     Raises
@@ -64,10 +64,10 @@ def pyodide_files(folder: Path | None = None, progress: Progress | None = None) 
         If a file is missing, cannot be downloaded, or has another hash.
     """
     official = _official()
-    locked = official if folder is None else {**official, **_own_lock(folder)}
+    locked = official if folder is None else {**official, **_lock_of_folder(folder)}
     contents = {}
     for k, (name, file) in enumerate(locked.items()):
-        content = _downloaded(file) if folder is None else _found(folder, file)
+        content = _downloaded(file) if folder is None else _read_file(folder, file)
         _check_hash(file, content)
         contents[name] = content
         if progress is not None:
@@ -82,14 +82,14 @@ def _official() -> Mapping[str, LockedFile]:
     return {name: LockedFile(**entry) for name, entry in json.loads(text).items()}
 
 
-def _own_lock(folder: Path) -> dict[str, LockedFile]:
+def _lock_of_folder(folder: Path) -> dict[str, LockedFile]:
     """Files named by the lock file of a folder, if it has one."""
-    path = folder / _OWN_LOCK
+    path = folder / _FOLDER_LOCK
     if not path.exists():
         return {}
     try:
         entries = json.loads(path.read_text("utf-8"))
-        own = {
+        locked = {
             name: LockedFile(file=str(entry["file"]), url="", sha256=str(entry["sha256"]))
             for name, entry in entries.items()
         }
@@ -98,13 +98,13 @@ def _own_lock(folder: Path) -> dict[str, LockedFile]:
             f'"{path}" is not a lock file ({type(error).__name__}: {error}): write '
             '{"numpy": {"file": "…", "sha256": "…"}}, or remove it to use the official files'
         ) from None
-    for name in own:
+    for name in locked:
         if name not in _official():
-            raise InputError(f'"{path}": "{name}" is none of {", ".join(_official())}')
-    return own
+            raise InputError(f'"{path}": "{name}" is not one of {", ".join(_official())}')
+    return locked
 
 
-def _found(folder: Path, file: LockedFile) -> bytes:
+def _read_file(folder: Path, file: LockedFile) -> bytes:
     try:
         return (folder / file.file).read_bytes()
     except OSError as error:
@@ -128,10 +128,10 @@ def _downloaded(file: LockedFile) -> bytes:
 
 
 def _check_hash(file: LockedFile, content: bytes) -> None:
-    found = hashlib.sha256(content).hexdigest()
-    if found != file.sha256:
+    digest = hashlib.sha256(content).hexdigest()
+    if digest != file.sha256:
         raise InputError(
-            f'"{file.file}" is not the expected file: its SHA-256 is {found}, and {file.sha256} '
+            f'"{file.file}" is not the expected file: its SHA-256 is {digest}, and {file.sha256} '
             f"was expected; get it again{_source(file)}"
         )
 
@@ -145,7 +145,7 @@ def _source(file: LockedFile) -> str:
 
 
 _EARLIEST = (1980, 1, 1, 0, 0, 0)  # of a ZIP archive
-#: Data that only some visits need: files of their own, loaded when they are read.
+#: Data that only some visits need: separate files, loaded when they are read.
 _LATE = (
     "circuits/homotopy/start_sets.npz",
     "synthesis/atlas/paths.npz",
@@ -227,7 +227,7 @@ def _files_of(wheel: bytes) -> dict[str, bytes]:
 # The files of the page that solves in the browser alone: a folder for a host, or one HTML file.
 
 
-#: Begins the name of the generator in every page; tells our pages from others.
+#: Begins the name of the generator in every page; marks our pages.
 MARK = '<meta name="generator" content="Linkwork web'
 _SINGLE = "linkwork.html"  # in a folder: for disks and frames, where nothing can be fetched
 _CACHED = 12  # digits of a build in the names of caches

@@ -84,30 +84,30 @@ class ReadGeometry(TapedGeometry):
         super().__init__(rows)
         self.links, self.read = nominal.linkage.links, nominal.geometry
         self.length = nominal.geometry.length  # of the unknown moments
-        own = set(super().points)
+        known = set(super().points)
         #: Points of lines that the file lacks, a unit from the other one.
         self.ends: dict[str, Any] = {}
         for slider in nominal.linkage.sliders:
             direction = _line_of(slider.name, rows)
-            if direction is not None and not own.issuperset(slider.line):
+            if direction is not None and not known.issuperset(slider.line):
                 way = line_of(slider.line, nominal.geometry)
                 side = np.sign((np.conj(way) * _bare(direction)).real)
-                self._add_ends(slider.line, side * direction, own)
+                self._add_ends(slider.line, side * direction, known)
         #: The points whose places are not known.
-        self.unknown = [p for p in nominal.linkage.points if p not in own.union(self.ends)]
+        self.unknown = [p for p in nominal.linkage.points if p not in known.union(self.ends)]
 
     def kind(self, name: str) -> Kind:
         """What an input of the linkage measures."""
         return self.read.kind(name)
 
-    def _add_ends(self, line: tuple[str, str], along: Any, own: set[str]) -> None:
+    def _add_ends(self, line: tuple[str, str], along: Any, known: set[str]) -> None:
         start, end = line
-        if end in own:
+        if end in known:
             self.ends[start] = super().place(end).v - along
             return
         zero = np.zeros(self.rows, dtype=complex)
-        first = super().place(start).v if start in own else zero
-        self.ends |= {end: first + along} | ({} if start in own else {start: zero})
+        first = super().place(start).v if start in known else zero
+        self.ends |= {end: first + along} | ({} if start in known else {start: zero})
 
     def place(self, point: str) -> Jet:
         """A point of the file; of a line without points there one that gives its direction."""
@@ -190,25 +190,25 @@ class LoadedRows(DifferentiatedRows):
     @cached_property
     def _ideal(self) -> tuple[list[Any], Array]:
         """Efforts of all inputs without friction, and the size of the largest term, (B,)."""
-        found: list[Any] = [np.zeros(len(self.solution)) for _ in self.equations.inputs]
+        efforts: list[Any] = [np.zeros(len(self.solution)) for _ in self.equations.inputs]
         largest = np.zeros(len(self.solution))
         alone = self._loads.geometry.alone
         for load, moved in work_terms(self._loads):
-            for k, own in enumerate([moved] if alone else moved):
-                found[k] = found[k] - (np.conj(load) * own).real  # eq. (71)
-                largest = np.fmax(largest, np.abs(_bare(load)) * np.abs(_bare(own)))
-        return found, largest
+            for k, rate in enumerate([moved] if alone else moved):
+                efforts[k] = efforts[k] - (np.conj(load) * rate).real  # eq. (71)
+                largest = np.fmax(largest, np.abs(_bare(load)) * np.abs(_bare(rate)))
+        return efforts, largest
 
     @cached_property
     def _efforts(self) -> dict[str, Any]:
         """Efforts of all inputs by virtual work, and their power."""
-        inputs, found = self.equations.inputs, list(self._ideal[0])
+        inputs, efforts = self.equations.inputs, list(self._ideal[0])
         if self._rubs:
-            found[0] = found[0] + self._joints.friction_effort()
-        named = {effort_name(x.name): own for x, own in zip(inputs, found, strict=True)}
+            efforts[0] = efforts[0] + self._joints.friction_effort()
+        named = {effort_name(x.name): effort for x, effort in zip(inputs, efforts, strict=True)}
         if self.speed is not None:
-            rates = zip(self._input_rate, found, strict=True)
-            named["power"] = sum((rate * own for rate, own in rates), 0.0) * self.speed
+            rates = zip(self._input_rate, efforts, strict=True)
+            named["power"] = sum((rate * effort for rate, effort in rates), 0.0) * self.speed
         return named
 
     @property
@@ -227,14 +227,14 @@ class LoadedRows(DifferentiatedRows):
         works = np.abs(_bare(useful)) > NO_WORK * largest
         spent = np.where(works, useful + lost, np.nan)
         ahead = _bare(useful) >= 0.0
-        found = {"efficiency": np.where(ahead, useful / spent, spent / useful)}
+        losses = {"efficiency": np.where(ahead, useful / spent, spent / useful)}
         if self.speed is None:
             (name,) = (x.name for x in self.equations.inputs)
             back = self._equilibrium(-1.0).friction_effort()
-            found[f"{effort_name(name)}.backward"] = ideal + back
+            losses[f"{effort_name(name)}.backward"] = ideal + back
         else:
-            found["friction_power"] = lost * np.abs(self.speed)
-        return found
+            losses["friction_power"] = lost * np.abs(self.speed)
+        return losses
 
     @cached_property
     def _totals(self) -> dict[str, Any]:
@@ -292,13 +292,13 @@ class _Equilibrium:
         self._solve()
 
     def _solve(self) -> None:
-        """Unknowns and amounts of what follows from them, on the tape."""
+        """Unknowns, and the amounts that follow from them, on the tape."""
         bodies, solved, tape = self.bodies, self.solved, self.tape
         r, amounts, inverse = solved.unknowns, solved.amounts, solved.balance.inverse
         rest: list[Any] = [np.zeros(len(r)) for _ in range(bodies.equations)]
         sums: list[tuple[list[Act], Any]] = [([act], 1.0) for act in self.acts]
         sums += [(list(acts), r[:, k]) for k, acts in enumerate(bodies.unknowns)]
-        sums += [(list(own.acts), amounts[:, k]) for k, own in enumerate(bodies.following)]
+        sums += [(list(item.acts), amounts[:, k]) for k, item in enumerate(bodies.following)]
         for group, factor in sums:
             for act in group:
                 for row, value in bodies.entries(act):
@@ -316,7 +316,7 @@ class _Equilibrium:
                 r[:, k],
                 [
                     (1.0, step[k]),
-                    *((own[:, k], c) for own, c in zip(answers, changes, strict=True)),
+                    *((item[:, k], c) for item, c in zip(answers, changes, strict=True)),
                 ],
             )
             for k in range(r.shape[1])
@@ -334,14 +334,14 @@ class _Equilibrium:
         matrix = np.tile(np.eye(count), (rows, 1, 1))
         sides: list[Any] = []
         for k, follower in enumerate(bodies.following):
-            own = list(follower.size.unknowns)
-            u = solved.unknowns[:, own]
+            places = list(follower.size.unknowns)
+            u = solved.unknowns[:, places]
             size: Any = follower.size.value(u)
             # friction acts against the motion, whatever the tape says
             sign = np.sign(solved.amounts[:, k]) * np.sign(_bare(size))
             slope = sign[:, None] * solved.bodies.following[k].size.gradient(u)
             side: Any = self.tape.combine(np.zeros(rows), [(sign, size)])
-            for place, j in enumerate(own):
+            for place, j in enumerate(places):
                 side = side + slope[:, place] * step[j]
                 for other, answer in enumerate(solved.answers):
                     matrix[:, k, other] -= slope[:, place] * answer[:, j]
@@ -362,7 +362,7 @@ class _Equilibrium:
 
     def readings(self) -> dict[str, Any]:
         """All named quantities."""
-        bodies, found = self.bodies, dict[str, Any]()
+        bodies, readings = self.bodies, dict[str, Any]()
         acts = list(self.acts)
         for amount, follower in zip(self.amounts, bodies.following, strict=True):
             acts += [Act(a.on, a.place, a.force * amount, a.moment) for a in follower.acts]
@@ -371,8 +371,8 @@ class _Equilibrium:
             value = reading.constant + sum((f * self.unknowns[k] for k, f in reading.terms), 0.0)
             if reading.follow is not None:
                 value = value + self.amounts[reading.follow]
-            found[reading.name] = value
-        return found
+            readings[reading.name] = value
+        return readings
 
 
 def _bare(value: Any) -> Array:

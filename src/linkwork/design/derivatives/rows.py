@@ -1,4 +1,4 @@
-"""Solved rows, and in which of them variables have finite derivatives."""
+"""Solved rows, and the rows in which variables have finite derivatives."""
 
 from __future__ import annotations
 
@@ -53,8 +53,8 @@ class RegularRows:
 def row_of(model: Model, position: Position) -> RegularRows:
     """One position as a row."""
     v = np.append(position.q, np.array([*position.input.values()]) * model.input_scale)[None, :]
-    found = np.array([position.status.ok])
-    return RegularRows(v, found, _rates_exist(model, position, 1), position)
+    solved = np.array([position.status.ok])
+    return RegularRows(v, solved, _rates_exist(model, position, 1), position)
 
 
 def rows_of(model: Model, motion: Motion, *further: Motion) -> RegularRows:
@@ -67,18 +67,18 @@ def rows_of(model: Model, motion: Motion, *further: Motion) -> RegularRows:
         )
         for each in parts
     ]  # fmt: skip
-    found = np.concatenate([each.found for each in parts])
+    solved = np.concatenate([each.found for each in parts])
     regular = np.concatenate([_rates_exist(model, each, len(each)) for each in parts])
-    return RegularRows(np.concatenate(v), found, regular, motion)
+    return RegularRows(np.concatenate(v), solved, regular, motion)
 
 
 def _rates_exist(model: Model, solved: Solved, count: int) -> BoolArray:
     """Where the unknowns have derivatives by the input."""
-    found = np.ones(count, dtype=bool)
+    exist = np.ones(count, dtype=bool)
     if model.equations.inputs:
         for unknown in model.motion_quantities.names.unknowns:
-            found &= np.isfinite(np.atleast_1d(solved.own(unknown).d1))
-    return found
+            exist &= np.isfinite(np.atleast_1d(solved.own(unknown).d1))
+    return exist
 
 
 # ----------------------------------------------------------------------
@@ -92,7 +92,7 @@ _REFUSED: WeakKeyDictionary[Compiled, dict[VariedNumber, str]] = WeakKeyDictiona
 def chosen_numbers(
     model: Model, by: Iterable[str] | None
 ) -> tuple[tuple[VariedNumber, ...], dict[str, str]]:
-    """The numbers asked for, or all that are written as plain numbers; and why others cannot vary.
+    """The requested numbers, or all plain numbers of the file; and why other ones cannot vary.
 
     Raises
     ------
@@ -103,16 +103,16 @@ def chosen_numbers(
     """
     description = model.description
     if by is not None:
-        asked = (by,) if isinstance(by, str) else tuple(by)
-        numbers = tuple(number_named(description, name) for name in asked)
+        names = (by,) if isinstance(by, str) else tuple(by)
+        numbers = tuple(number_named(description, name) for name in names)
         reasons = _refusals(model, numbers)
-        for k, (name, number) in enumerate(zip(asked, numbers, strict=True)):
+        for k, (name, number) in enumerate(zip(names, numbers, strict=True)):
             if number in numbers[:k]:
                 raise InputError(f'"{name}" is named twice: give each number once')
             if reasons[number]:
                 raise InputError(f'"{name}" cannot vary: {reasons[number]}')
         return numbers, {}
-    # what a formula gives follows from the numbers in it; a guess changes no position
+    # the value of a formula follows from its numbers; a guess changes no position
     plain = [
         number
         for number in varied_numbers(description)
@@ -157,8 +157,8 @@ def _refusal(description: Description, numbers: Sequence[VariedNumber]) -> str:
             return str(error)
         held = problems[0].key
         if held[0] in ("lengths", "angles") and "ground coordinates" in problems[0].message:
-            told = f"ground coordinates are exact and give {key_text(held)}"
-            return f"{told}: leave that out to vary coordinates, or vary other numbers"
+            message = f"ground coordinates are exact and give {key_text(held)}"
+            return f"{message}: leave that out to vary coordinates, or vary other numbers"
         return str(problems[0].message)
     return ""
 
@@ -283,7 +283,7 @@ class DifferentiatedRows(QuantityValues):
 
     @cached_property
     def variables(self) -> dict[str, Jet]:
-        """All variables by symbol, with as many derivatives on the tape as asked for."""
+        """All variables by symbol, with the requested order of derivatives, on the tape."""
         return self._differentiated()
 
     def _differentiated(self, values: Sequence[Any] = ()) -> dict[str, Jet]:
@@ -393,7 +393,7 @@ class DifferentiatedRows(QuantityValues):
 
     @cached_property
     def misfits(self) -> list[Any]:
-        """The lengths of redundant links less their given lengths, (B,) each, on the tape."""
+        """The lengths of redundant links minus their given lengths, (B,) each, on the tape."""
         return [
             self.variables[canonical(part.variable)].v - part.length
             for part in self.taped.redundant
@@ -411,7 +411,7 @@ def taped_speed(model: Model, description: Description, equations: LoopEquations
     if model.speed is None:
         return None
     speeds = leading_speeds(description, equations.inputs, model.rows)
-    # time itself, where it drives the rows, has a speed of its own
+    # time, where it drives the rows, has a speed too
     return next(iter(speeds.values()), model.speed)
 
 
@@ -506,13 +506,13 @@ class DifferentiatedFolds(DifferentiatedRows):
         directions = [np.eye(v.shape[1])[k] for k in range(self.count)]
         directions.append(np.append(np.zeros(self.count), self._input_rate))
         matrix = np.zeros((len(v), self.count + 1, self.count + 1))
-        own = table.second_directional_derivative(v, along)
+        along_twice = table.second_directional_derivative(v, along)
         for k, direction in enumerate(directions):
             moved = np.broadcast_to(direction, v.shape)
             matrix[:, : self.count, k] = jacobian @ direction
             # D²F[φ, d] by polarisation
             both = table.second_directional_derivative(v, along + moved)
-            mixed = 0.5 * (both - own - table.second_directional_derivative(v, moved))
+            mixed = 0.5 * (both - along_twice - table.second_directional_derivative(v, moved))
             matrix[:, self.count, k] = (left * mixed).sum(axis=1)
         inverse = np.full_like(matrix, np.nan)
         for k, one in enumerate(matrix):

@@ -180,13 +180,13 @@ _STEADY = 1e-9  # relative: a number whose derivatives are below is one that can
 class Tape(Consensus):
     """An arithmetic that records.
 
-    Shapes of values broadcast; an operation never adds rows up, so that every row keeps derivatives
-    of its own.
+    Shapes of values broadcast; an operation never adds rows up, so that every row keeps its
+    derivatives.
 
     Parameters
     ----------
     count : int
-        Rows whose equations are written together; more than one have numbers of their own.
+        Rows whose equations are written together; several rows may have different numbers.
     """
 
     def __init__(self, count: int = 1) -> None:
@@ -199,10 +199,10 @@ class Tape(Consensus):
         self.writing = False
 
     def number(self, value: float | Array) -> float:
-        """A number by which results are differentiated; (count,) if rows have their own."""
-        found = self._node(np.atleast_1d(value), (), ())
-        self.inputs.append(found.node)
-        return cast(float, found)
+        """A number by which results are differentiated; (count,) if it differs from row to row."""
+        number = self._node(np.atleast_1d(value), (), ())
+        self.inputs.append(number.node)
+        return cast(float, number)
 
     def _node(
         self, values: AnyArray, parents: Sequence[int], partials: Sequence[Partial]
@@ -317,41 +317,41 @@ class Tape(Consensus):
 
     def apply(self, function: Callable[..., Any], *numbers: object) -> Any:
         """A function of NumPy; those without derivatives give plain arrays."""
-        given = [self.operand(number) for number in numbers]
+        operands = [self.operand(number) for number in numbers]
         neutral = _NEUTRAL.get(function)
         if neutral is not None:
-            # rates of what does not move are plain zeros: of a sum or product they need no node
-            for x, y in (given, given[::-1])[: 1 if function is np.subtract else 2]:
+            # rates of fixed points are plain zeros: they need no node of a sum or product
+            for x, y in (operands, operands[::-1])[: 1 if function is np.subtract else 2]:
                 if _is_plain(y, neutral):
                     return x
                 if function is np.multiply and _is_plain(y, 0.0):
                     return _ZERO
         if function in _OF_TWO:
-            return reduce(partial(self.apply, _OF_TWO[function]), given)
-        return self.computed(function, given)
+            return reduce(partial(self.apply, _OF_TWO[function]), operands)
+        return self.computed(function, operands)
 
     def bare(self, number: Any) -> Any:
         """The values of an operand."""
         return number.values if isinstance(number, _HELD) else number
 
-    def computed(self, function: Callable[..., Any], given: Sequence[Any]) -> Any:
+    def computed(self, function: Callable[..., Any], operands: Sequence[Any]) -> Any:
         """The value of a function of operands."""
-        bare = [*map(self.bare, given)]
+        bare = [*map(self.bare, operands)]
         if function in PLAIN:
             return self.decidable(function(*bare))
         rule = one_sided if function is np.abs and self.writing else RULES.get(function)
         if rule is None:
             raise NotElementwise
         values = np.asarray(function(*bare))
-        taped = [isinstance(x, TapedNumber) for x in given]
+        taped = [isinstance(x, TapedNumber) for x in operands]
         if not any(taped):
             return values
         linked = [
-            (x.node, own)
-            for x, own, is_taped in zip(given, rule(values, *bare), taped, strict=True)
-            if is_taped and own is not None
+            (x.node, rate)
+            for x, rate, is_taped in zip(operands, rule(values, *bare), taped, strict=True)
+            if is_taped and rate is not None
         ]
-        return self._node(values, [node for node, _ in linked], [own for _, own in linked])
+        return self._node(values, [node for node, _ in linked], [rate for _, rate in linked])
 
     def add(self, x: Any, y: Any) -> Any:
         """x + y."""
@@ -385,15 +385,15 @@ class Tape(Consensus):
 
     @np.errstate(all="ignore")  # a derivative that does not exist is no number
     def forward(
-        self, results: Sequence[object], given: Mapping[int, AnyArray] | None = None
+        self, results: Sequence[object], seeds: Mapping[int, AnyArray] | None = None
     ) -> list[AnyArray]:
-        """The derivatives of results by all inputs, or by the parameters of given ones, (P, …).
+        """The derivatives of results by all inputs, or by the parameters of ``seeds``, (P, …).
 
-        ``given``: the derivatives of nodes by P parameters, (P, …) each, in the place of inputs.
+        ``seeds``: the derivatives of nodes by P parameters, (P, …) each, in the place of inputs.
         """
         units = np.eye(len(self.inputs))[:, :, None]
         rates: dict[int, AnyArray] = dict(
-            zip(self.inputs, units, strict=True) if given is None else given
+            zip(self.inputs, units, strict=True) if seeds is None else seeds
         )
         nothing = np.zeros((len(next(iter(rates.values()), ())), 1))
         for node in self._needed([x.node for x in results if isinstance(x, TapedNumber)]):
@@ -421,38 +421,38 @@ class Tape(Consensus):
             return np.zeros((len(self.inputs), 1))
         adjoints: dict[int, Any] = {result.node: np.ones(np.shape(result.values))}
         for node in reversed(self._needed([result.node])):
-            own = adjoints.get(node)
-            # an input keeps its adjoint; all others are given up once they are passed on
-            if own is None or not self._parents[node]:
+            adjoint = adjoints.get(node)
+            # an input keeps its adjoint; other nodes drop theirs once it is passed on
+            if adjoint is None or not self._parents[node]:
                 continue
             for parent, (a, b) in zip(self._parents[node], self._partials[node], strict=True):
                 # eq. (122): the transpose of eq. (121)
-                part = _product(np.conj(a), own)
+                part = _product(np.conj(a), adjoint)
                 if b is not None:
-                    part = part + _product(b, np.conj(own))
+                    part = part + _product(b, np.conj(adjoint))
                 part = np.real(part) if self._real[parent] else part
                 known = adjoints.get(parent)
                 adjoints[parent] = part if known is None else known + part
             del adjoints[node]
         shape = np.shape(result.values)
-        found = np.zeros((len(self.inputs), *shape))
+        gradient = np.zeros((len(self.inputs), *shape))
         for k, node in enumerate(self.inputs):
-            found[k] = adjoints.get(node, 0.0)
-        return found
+            gradient[k] = adjoints.get(node, 0.0)
+        return gradient
 
     def _needed(
         self, results: Sequence[int], uses: Mapping[int, Sequence[int]] | None = None
     ) -> list[int]:
         """The nodes on which results depend, or of which they make use, in order."""
-        wanted = bytearray(len(self._parents))
+        needed = bytearray(len(self._parents))
         for node in results:
-            wanted[node] = 1
+            needed[node] = 1
         # parents come before their children
         for node in range(max(results, default=-1), -1, -1):
-            if wanted[node]:
+            if needed[node]:
                 for parent in self._parents[node] if uses is None else uses.get(node, ()):
-                    wanted[parent] = 1
-        return [node for node, used in enumerate(wanted) if used]
+                    needed[parent] = 1
+        return [node for node, used in enumerate(needed) if used]
 
 
 def is_still(values: AnyArray, rates: AnyArray) -> BoolArray:
@@ -489,13 +489,13 @@ class TapedNumber(Lanes):
         self.node = node
 
     def __array_function__(
-        self, function: Callable[..., Any], types: object, given: Sequence[Any], named: object
+        self, function: Callable[..., Any], types: object, arguments: Sequence[Any], named: object
     ) -> Any:
         if function is np.shape:
             return np.shape(self.values)
         if function is np.broadcast_to or function is np.atleast_1d:
-            return given[0]  # operations broadcast by themselves
-        return self.arithmetic.apply(function, *given)
+            return arguments[0]  # operations broadcast by themselves
+        return self.arithmetic.apply(function, *arguments)
 
     def conj(self) -> Any:
         """The complex conjugate."""
@@ -566,23 +566,23 @@ class RecordedTape(Tape):
         return _RecordedNumber(values, self, super()._node(values, *links).node)
 
     def decidable(self, truths: AnyArray) -> Any:
-        """Truths with a node of their own."""
+        """Truth values with a node on the tape."""
         return _RecordedTruths(truths, self, self._node(truths, (), ()).node)
 
-    def computed(self, function: Callable[..., Any], given: Sequence[Any]) -> Any:
+    def computed(self, function: Callable[..., Any], operands: Sequence[Any]) -> Any:
         """The value of a function on the record."""
-        found = super().computed(function, given)
-        constants = [x for x in given if not isinstance(x, _RECORDED)]
-        if len(constants) == len(given):
-            return found
+        result = super().computed(function, operands)
+        constants = [x for x in operands if not isinstance(x, _RECORDED)]
+        if len(constants) == len(operands):
+            return result
         # arrays of constants may not fit to the number of designs
         if function not in _ELEMENTWISE or any(np.ndim(x) for x in constants):
             raise NotElementwise
-        if not isinstance(found, _RECORDED):
-            found = self._node(found, (), ())  # one of two constants
-        self._steps[found.node] = function, given
-        self._uses[found.node] = [x.node for x in given if isinstance(x, _RECORDED)]
-        return found
+        if not isinstance(result, _RECORDED):
+            result = self._node(result, (), ())  # one of two constants
+        self._steps[result.node] = function, operands
+        self._uses[result.node] = [x.node for x in operands if isinstance(x, _RECORDED)]
+        return result
 
     def combine(self, values: AnyArray, terms: Sequence[tuple[Any, Any]]) -> NoReturn:
         """Not on the record: values that are computed elsewhere."""
@@ -598,20 +598,20 @@ class RecordedTape(Tape):
 
     def is_steady(self, number: Any) -> bool:
         """Whether no input changes a number; designs that follow have to agree if it is so."""
-        found = super().is_steady(number)
-        if found and isinstance(number, _RecordedNumber):
+        steady = super().is_steady(number)
+        if steady and isinstance(number, _RecordedNumber):
             self._steady.append(number)
-        return found
+        return steady
 
     # Following
 
     def keep(self, numbers: Sequence[TapedNumber]) -> None:
-        """End the record of what leads to numbers."""
+        """End the record: keep the steps that lead to these numbers."""
         self._results = [*self._steady, *numbers]
         nodes = [number.node for number in self._results]
         rated = set(self._needed(nodes))
-        wanted = self._needed([*nodes, *(node for node, _ in self._decisions)], self._uses)
-        self._plan = [(k, k in rated, self._steps[k]) for k in wanted if k in self._steps]
+        needed = self._needed([*nodes, *(node for node, _ in self._decisions)], self._uses)
+        self._plan = [(k, k in rated, self._steps[k]) for k in needed if k in self._steps]
 
     @np.errstate(all="ignore")
     def follow(self, x: Array) -> tuple[BoolArray, list[tuple[AnyArray, AnyArray]]]:
@@ -620,14 +620,14 @@ class RecordedTape(Tape):
         """
         tape = Tape(x.shape[1])
         tape.writing = True
-        found: dict[int, Any] = dict(zip(self.inputs, map(tape.number, x), strict=True))
-        for node, is_rated, (function, given) in self._plan:
-            own = [found[x.node] if isinstance(x, _RECORDED) else x for x in given]
-            # what decides only needs no derivatives
-            found[node] = tape.computed(function, own if is_rated else [*map(tape.bare, own)])
+        numbers: dict[int, Any] = dict(zip(self.inputs, map(tape.number, x), strict=True))
+        for node, is_rated, (function, operands) in self._plan:
+            parts = [numbers[x.node] if isinstance(x, _RECORDED) else x for x in operands]
+            # steps of decisions alone need no derivatives
+            numbers[node] = tape.computed(function, parts if is_rated else [*map(tape.bare, parts)])
         for node, answer in self._decisions:
-            tape.agreeing &= tape.bare(found[node]) == answer
-        results = [found[number.node] for number in self._results]
+            tape.agreeing &= tape.bare(numbers[node]) == answer
+        results = [numbers[number.node] for number in self._results]
         values, rates = [*map(tape.bare, results)], tape.forward(results)
         steady = len(self._steady)
         for value, rate in zip(values[:steady], rates[:steady], strict=True):

@@ -82,19 +82,19 @@ class Degrees:
 
     def of(self, unknown: str | Literal) -> Degree | None:
         """The degree of a name or literal number; ``None`` if it is not determined."""
-        found = self.resolved(Degree(rest={unknown: Fraction(1)}))
-        return None if found.rest else found
+        degree = self.resolved(Degree(rest={unknown: Fraction(1)}))
+        return None if degree.rest else degree
 
     def add(self, where: str, tree: Node, degree: Degree | None = None) -> Degree:
-        """The formula at a place of the file, which has a degree if one is given.
+        """Add the formula at a place of the file, with its degree if it is known.
 
         Raises
         ------
         InputError
             If the formula mixes lengths, angles and plain numbers.
         """
-        own = self._of(tree, where)
-        return own if degree is None else self.equate(own, degree, where)
+        of_tree = self._of(tree, where)
+        return of_tree if degree is None else self.equate(of_tree, degree, where)
 
     def name(self, name: str) -> Degree:
         """The degree of a name, known or not."""
@@ -138,14 +138,14 @@ class Degrees:
 
     def _prefer_pure(self) -> None:
         # constants last: pi in pi/2 is the angle
-        every = [literal for found in self._literals.values() for literal in found]
+        every = [literal for literals in self._literals.values() for literal in literals]
         for literal in sorted(every, key=lambda one: one.constant):
             self._prefer(literal)
 
     def _prefer(self, unknown: str | Literal) -> None:
-        found = self.resolved(Degree(rest={unknown: Fraction(1)}))
-        if found.rest:
-            self.equate(found, PURE, "")
+        degree = self.resolved(Degree(rest={unknown: Fraction(1)}))
+        if degree.rest:
+            self.equate(degree, PURE, "")
 
     def _literal(self, where: str, column: int, constant: bool = False) -> Degree:
         literal = Literal(where, column, constant)

@@ -36,7 +36,7 @@ Path = tuple[str | int, ...]
 class Entry:
     """A number, formula, name or flag at a key path; ``row``: the outermost table that has it.
 
-    ``of``: what a name in it means: point, link, slider or name.
+    ``of``: the kind of thing that a name in it refers to: point, link, slider or name.
     """
 
     path: Path
@@ -52,11 +52,11 @@ def entries(
     path: Path = (),
     row: Mapping[str, Any] | None = None,
 ) -> Iterator[Entry]:
-    """All entries of a table with these keys; what does not match its kind is left out."""
+    """All entries of a table with these keys; entries of the wrong kind are left out."""
     for key in keys:
         if key.name in data:
-            own = (*path, key.name)
-            yield from _inside(data[key.name], key.kind, own, data if row is None else row)
+            entry_path = (*path, key.name)
+            yield from _inside(data[key.name], key.kind, entry_path, data if row is None else row)
 
 
 def measured_by(kind: NumberValue, row: Mapping[str, Any]) -> str:
@@ -79,29 +79,29 @@ def measured_by(kind: NumberValue, row: Mapping[str, Any]) -> str:
             return of
 
 
-def _inside(given: Any, kind: Kind, path: Path, row: Mapping[str, Any]) -> Iterator[Entry]:
+def _inside(content: Any, kind: Kind, path: Path, row: Mapping[str, Any]) -> Iterator[Entry]:
     match kind:
-        case Table(keys) if isinstance(given, Mapping):
-            yield from entries(given, keys, path, given if len(path) == 1 else row)
-        case Tables(keys) if isinstance(given, Mapping):
-            yield from entries(given, keys, path, given)
-        case TablesOrFormula() if isinstance(given, str):
-            yield Entry(path=path, kind=Formula(), given=given, row=row)
-        case Tables(keys) | TablesOrFormula(keys) if isinstance(given, list):
-            for k, each in enumerate(given):
+        case Table(keys) if isinstance(content, Mapping):
+            yield from entries(content, keys, path, content if len(path) == 1 else row)
+        case Tables(keys) if isinstance(content, Mapping):
+            yield from entries(content, keys, path, content)
+        case TablesOrFormula() if isinstance(content, str):
+            yield Entry(path=path, kind=Formula(), given=content, row=row)
+        case Tables(keys) | TablesOrFormula(keys) if isinstance(content, list):
+            for k, each in enumerate(content):
                 if isinstance(each, Mapping):
                     yield from entries(each, keys, (*path, k), each if len(path) == 1 else row)
-        case Named(of) if isinstance(given, Mapping):
-            for name, each in given.items():
+        case Named(of) if isinstance(content, Mapping):
+            for name, each in content.items():
                 yield from _inside(each, of, (*path, name), row)
-        case ListOf(of, noun) if isinstance(given, list):
-            for k, each in enumerate(given):
+        case ListOf(of, noun) if isinstance(content, list):
+            for k, each in enumerate(content):
                 for entry in _inside(each, of, (*path, k), row):
                     named = isinstance(entry.kind, Text) and not entry.of
                     yield replace(entry, of=noun) if named else entry
         case _:
             means = kind.of if isinstance(kind, Text) else ""
-            yield Entry(path=path, kind=kind, given=given, row=row, of=means)
+            yield Entry(path=path, kind=kind, given=content, row=row, of=means)
 
 
 # ----------------------------------------------------------------------
@@ -113,18 +113,18 @@ _OF_POINTS = ("points", "lengths", "angles", "clearances", "tolerances")
 
 
 def names_in_file(edits: TextEdits) -> dict[str, str]:
-    """Every name that a file gives, in its canonical form, with what has it."""
-    found: dict[str, str] = {}
+    """Every name of a file in its canonical form, with the noun of its thing."""
+    names: dict[str, str] = {}
     for table, noun in (
         ("points", "point"), ("links", "link"), ("dimensions", "dimension"), ("outputs", "output"),
         ("guess", "unknown"),
     ):  # fmt: skip
-        found |= {canonical(name): noun for name in edits.keys((table,))}
+        names |= {canonical(name): noun for name in edits.keys((table,))}
     for table, kind in PARTS.items():
         for _, row in edits.entries(table):
             if "name" in row:
-                found[canonical(str(row["name"]))] = kind.title.lower()
-    return found
+                names[canonical(str(row["name"]))] = kind.title.lower()
+    return names
 
 
 def rename(edits: TextEdits, of: str, name: str, new: str) -> None:
@@ -168,9 +168,9 @@ def rename(edits: TextEdits, of: str, name: str, new: str) -> None:
             if text != entry.given:
                 edits.put(entry.path, text)
         elif entry.path[0] == "stops" and entry.path[-1] == "of":
-            own, dot, rest = str(entry.given).partition(".")
+            base, dot, rest = str(entry.given).partition(".")
             # a coordinate is of a point, all else of a link or part
-            if canonical(own) == folded and bool(dot) == (of == "point"):
+            if canonical(base) == folded and bool(dot) == (of == "point"):
                 edits.put(entry.path, f"{new}{dot}{rest}")
         elif _refers(entry, of) and canonical(str(entry.given)) == folded:
             edits.put(entry.path, new)
@@ -185,8 +185,8 @@ def _check(edits: TextEdits, of: str, name: str, new: str) -> None:
     nouns = {"point": {"point"}, "link": {"link"}}.get(of)
     noun = known.get(canonical(name))
     if noun is None or (nouns is not None and noun not in nouns):
-        own = [word for word, noun in known.items() if nouns is None or noun in nouns]
-        raise UnknownNameError(f'there is no {of} "{name}" {choices(f"{of}s", own, name)}')
+        of_kind = [word for word, noun in known.items() if nouns is None or noun in nouns]
+        raise UnknownNameError(f'there is no {of} "{name}" {choices(f"{of}s", of_kind, name)}')
     if canonical(name) == GROUND:
         raise InputError(f'"{GROUND}" is the name of the fixed link in every file')
     folded = canonical(new)
@@ -218,10 +218,10 @@ def _keys(
         for key in edits.keys((table,)):
             # "O4.x" and "d.offset" are numbers of a point and of a part
             words = [word.partition(".") for word in key.split()]
-            if folded in (canonical(own) for own, _, _ in words):
+            if folded in (canonical(base) for base, _, _ in words):
                 renamed = (
-                    f"{new if canonical(own) == folded else own}{dot}{rest}"
-                    for own, dot, rest in words
+                    f"{new if canonical(base) == folded else base}{dot}{rest}"
+                    for base, dot, rest in words
                 )
                 yield (table, key), " ".join(renamed)
 
@@ -239,9 +239,9 @@ def _renamed(formula: str, pairs: dict[str, str], *, whole: bool, load: bool) ->
     """A formula with other names; ``whole``: also without a coordinate behind them."""
     equation = "=" in formula and not load
     trees = parse_equation(formula) if equation else (parse(formula, comparing=load),)
-    found: list[Name] = [node for tree in trees for node in names_in(tree)]
+    names: list[Name] = [node for tree in trees for node in names_in(tree)]
     text = formula
-    for node in sorted(found, key=lambda node: -node.column):
+    for node in sorted(names, key=lambda node: -node.column):
         head, dot, _ = node.spelling.partition(".")
         new = pairs.get(canonical(head))
         if new is not None and (dot or whole):
@@ -251,7 +251,7 @@ def _renamed(formula: str, pairs: dict[str, str], *, whole: bool, load: bool) ->
 
 
 # ----------------------------------------------------------------------
-# Copy or mirror points and links of a mechanism file, with what belongs to them.
+# Copy or mirror points and links of a mechanism file, with their parts.
 
 
 #: Numbers of parts that change sign in a mirror.
@@ -266,7 +266,7 @@ def copy_selection(edits: TextEdits, names: Mapping[str, str], *, mirrored: bool
     edits : TextEdits
         The text, with the new points in it.
     names : Mapping
-        The names of the copies by those of points and links; a point that is its own copy is
+        The names of the copies by those of points and links; a point that maps to itself is
         shared.
     mirrored : bool
         Whether angles change sign.
@@ -400,7 +400,7 @@ def _mirrored(table: str, row: Mapping[str, Any]) -> dict[str, Any]:
 
 
 def _opposite(entry: Any) -> Any:
-    """A number or formula with the other sign; what is neither stays, a problem of the file."""
+    """A number or formula with the other sign; anything else stays, as a problem of the file."""
     if isinstance(entry, str):
         return f"-({entry})"
     return 0 - entry if isinstance(entry, int | float) else entry

@@ -77,8 +77,8 @@ class FileDegrees:
 
     def of_name(self, name: str) -> str:
         """What a name in formulas measures: length, angle, number, or "" if that is not clear."""
-        found = self._degrees.of(canonical(name))
-        return next((word for word, degree in _BY_WORD.items() if degree == found), "")
+        known = self._degrees.of(canonical(name))
+        return next((word for word, degree in _BY_WORD.items() if degree == known), "")
 
     def check(self, *, turned: bool) -> None:
         """Check that everything can be converted; ``turned``: also angles.
@@ -113,22 +113,22 @@ class FileDegrees:
 
     def literals(self, written: Written) -> list[tuple[Literal, Degree]]:
         """The literal numbers of a formula, with their degrees."""
-        found = self._degrees.literals(key_text(written.path))
-        return [(literal, self._degrees.of(literal) or PURE) for literal in found]
+        literals = self._degrees.literals(key_text(written.path))
+        return [(literal, self._degrees.of(literal) or PURE) for literal in literals]
 
     def _undetermined(self) -> list[str]:
         """Names of variables whose kind nothing says; factors may still show a dimension's."""
         if self._form is LOOPS:
             return []
-        found = []
+        undetermined = []
         for name in self._degrees.names:
             if name in self._dimensions or self._degrees.of(name) is not None:
                 continue
             if (quantity := row_quantity(name)) is None:
-                found.append(name)
+                undetermined.append(name)
             else:
                 self._degrees.equate(self._degrees.name(name), _BY_WORD[quantity.kind.value], name)
-        return found
+        return undetermined
 
     def _known_names(self, listed: list[Entry]) -> Iterator[tuple[str, Degree]]:
         """Names in formulas whose kinds follow from the tables."""
@@ -145,10 +145,10 @@ class FileDegrees:
             elif entry.path[-1] == "law":
                 yield "phi", ANGLE
             elif entry.path[-1] == "name" and issubclass(PARTS.get(str(table), Part), _SLIDING):
-                own = str(entry.given)
-                yield canonical(own), ANGLE if entry.row.get("closed") else LENGTH
+                stated = str(entry.given)
+                yield canonical(stated), ANGLE if entry.row.get("closed") else LENGTH
                 if PARTS[str(table)] is Cylinder:
-                    yield canonical(Cylinder(name=own, between=("", "")).angle_name), ANGLE
+                    yield canonical(Cylinder(name=stated, between=("", "")).angle_name), ANGLE
 
     def _read(self, entry: Entry) -> None:
         match entry.kind:
@@ -174,15 +174,15 @@ class FileDegrees:
 
     def _varied(self, name: str) -> Degree:
         """That of a number that can vary: a length, angle, coordinate, offset or dimension."""
-        words, own = name.split(), canonical(name)
+        words, folded = name.split(), canonical(name)
         if len(words) == 2 or "." in name:
             return LENGTH
-        return ANGLE if len(words) == 3 else self._degrees.name(own)
+        return ANGLE if len(words) == 3 else self._degrees.name(folded)
 
-    def _number(self, entry: Entry, given: float | str, degree: Degree, unit: str = "") -> None:
-        if isinstance(given, str):
-            self._degrees.add(key_text(entry.path), parse(given), degree)
-        self.written.append(Written(entry.path, given, degree, unit))
+    def _number(self, entry: Entry, number: float | str, degree: Degree, unit: str = "") -> None:
+        if isinstance(number, str):
+            self._degrees.add(key_text(entry.path), parse(number), degree)
+        self.written.append(Written(entry.path, number, degree, unit))
 
     def _speed(self, entry: Entry) -> None:
         kind = next((k for k in ("link", "joint", "slider", "cylinder") if k in entry.row), "")
@@ -225,7 +225,7 @@ def change_units(edits: TextEdits, *, length: str = "", angle: str = "", convert
     Raises
     ------
     InputError
-        If a unit has no known size, or with the name of what cannot be converted.
+        If a unit has no known size, or an entry, which is named, cannot be converted.
 
     Examples
     --------
@@ -278,11 +278,11 @@ def _convert(edits: TextEdits, degrees: FileDegrees, factors: Mapping[str, Fract
 
 def _power(degree: Degree, factors: Mapping[str, Fraction]) -> Fraction | float:
     """The factor of numbers of a degree."""
-    found: Fraction | float = Fraction(1)
+    factor: Fraction | float = Fraction(1)
     for word, exponent in (("length", degree.length), ("angle", degree.angle)):
         power = exponent.numerator if exponent.denominator == 1 else float(exponent)
-        found *= factors[word] ** power
-    return found
+        factor *= factors[word] ** power
+    return factor
 
 
 def _rewritten(written: Written, degrees: FileDegrees, factors: Mapping[str, Fraction]) -> str:

@@ -1,1 +1,1 @@
-"""An atlas of paths: closed curves of many mechanisms, found again by their shape."""
+"""An atlas of paths: closed curves of many mechanisms, searched by shape."""

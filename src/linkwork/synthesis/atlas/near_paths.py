@@ -87,7 +87,7 @@ class NearPath:
 
 
 class PathAtlas:
-    """Closed paths of many mechanisms, found again by their shape.
+    """Closed paths of many mechanisms, searched by shape.
 
     Place, size, direction, timing and first point of a path do not count.
 
@@ -172,9 +172,9 @@ class PathAtlas:
             z = z[:-1]
         if len(z) < _FEWEST or not np.isfinite(z).all():
             raise InputError(f"a curve needs {_FEWEST} points or more, all finite: got {len(z)}")
-        found = self._atlas.nearest(z, whole_number("count", count, least=1))
+        paths = self._atlas.nearest(z, whole_number("count", count, least=1))
         return tuple(
-            NearPath(number=k, near=near, curve=z) for k, near in enumerate(found, start=1)
+            NearPath(number=k, near=near, curve=z) for k, near in enumerate(paths, start=1)
         )
 
     def __len__(self) -> int:
@@ -187,11 +187,11 @@ class PathAtlas:
 def _points(curve: object) -> ComplexArray:
     """The corners (N,) of a curve."""
     try:
-        given = np.asarray(curve)
+        array = np.asarray(curve)
     except ValueError:  # rows of different lengths
-        given = np.empty(0, dtype=object)
-    if given.dtype.kind == "c" and given.ndim == 1:
-        return np.asarray(given, dtype=complex)
-    if given.dtype.kind in "iuf" and given.ndim == 2 and given.shape[1] == 2:
-        return np.asarray(given[:, 0] + 1j * given[:, 1])
+        array = np.empty(0, dtype=object)
+    if array.dtype.kind == "c" and array.ndim == 1:
+        return np.asarray(array, dtype=complex)
+    if array.dtype.kind in "iuf" and array.ndim == 2 and array.shape[1] == 2:
+        return np.asarray(array[:, 0] + 1j * array[:, 1])
     raise InputError(f"a curve is a list of points (x, y) or complex numbers, got {as_told(curve)}")

@@ -43,10 +43,10 @@ def points_by_arc_length(z: ComplexArray) -> ComplexArray:
     length = np.cumsum(np.abs(np.diff(closed, axis=1)), axis=1)
     length = np.concatenate([np.zeros((len(z), 1)), length], axis=1)
     share = np.arange(_POINTS) / _POINTS
-    found = np.empty((len(z), _POINTS), dtype=complex)
+    resampled = np.empty((len(z), _POINTS), dtype=complex)
     for k, (along, points) in enumerate(zip(length, closed, strict=True)):
-        found[k] = np.interp(share * along[-1], along, points)
-    return found
+        resampled[k] = np.interp(share * along[-1], along, points)
+    return resampled
 
 
 def coefficients(z: ComplexArray) -> tuple[ComplexArray, ComplexArray, Array]:
@@ -56,10 +56,10 @@ def coefficients(z: ComplexArray) -> tuple[ComplexArray, ComplexArray, Array]:
     it; shapes have the norm 1, NaN for curves that are one point.
     """
     c = np.fft.fft(points_by_arc_length(z), axis=1) / _POINTS
-    own = c[:, HARMONICS]
-    size = np.sqrt((np.abs(own) ** 2).sum(axis=1))
+    harmonics = c[:, HARMONICS]
+    size = np.sqrt((np.abs(harmonics) ** 2).sum(axis=1))
     with np.errstate(all="ignore"):
-        return own / size[:, None], c[:, 0], size
+        return harmonics / size[:, None], c[:, 0], size
 
 
 def in_ways(shape: ComplexArray) -> ComplexArray:
@@ -68,16 +68,16 @@ def in_ways(shape: ComplexArray) -> ComplexArray:
     return np.stack([shape, back, back.conj(), shape.conj()])
 
 
-def distances(shapes: ComplexArray, wanted: ComplexArray) -> tuple[Array, Array, Array]:
-    """The distances (D,) of shapes (D, 16) from a wanted one (16,), turned and begun as is best.
+def distances(shapes: ComplexArray, goals: ComplexArray) -> tuple[Array, Array, Array]:
+    """The distances (D,) of shapes (D, 16) from a goal (16,), with the best turn and first point.
 
     Returns
     -------
     distance, shift, turn : (D,)
         The root of the mean square of the gaps, relative to the size; e^{i(ks + turn)} times the
-        shape's c_k is nearest to the wanted shape, for the shift s [rad].
+        shape's c_k is nearest to the goal, for the shift s [rad].
     """
-    products = shapes.conj() * wanted
+    products = shapes.conj() * goals
     grid = np.arange(_SHIFTS) * (2.0 * np.pi / _SHIFTS)
     # f(s) = Σ c̄_k w_k e^{-iks}: its largest length is the best agreement
     s = grid[np.abs(products @ np.exp(-1j * np.outer(HARMONICS, grid))).argmax(axis=1)]
@@ -139,26 +139,26 @@ class AtlasFamily:
     @cached_property
     def lengths(self) -> AnyArray:
         """Lengths of the coefficients of shapes, (D, 16) float32, of norm 1."""
-        found = np.empty((len(self.shapes), self.shapes.shape[1] // 2), dtype=np.float32)
-        for first in range(0, len(found), _BLOCK):
+        lengths = np.empty((len(self.shapes), self.shapes.shape[1] // 2), dtype=np.float32)
+        for first in range(0, len(lengths), _BLOCK):
             part = slice(first, first + _BLOCK)
             pairs = self.shapes[part].astype(np.float32)
             pairs *= pairs
             squares = pairs[:, 0::2] + pairs[:, 1::2]
-            found[part] = np.sqrt(squares / squares.sum(axis=1, keepdims=True))
-        return found
+            lengths[part] = np.sqrt(squares / squares.sum(axis=1, keepdims=True))
+        return lengths
 
-    def bounds(self, wanted: ComplexArray) -> AnyArray:
+    def bounds(self, goals: ComplexArray) -> AnyArray:
         """Lower bounds of the distances (D,) from a shape in all WAYS (4, 16)."""
         # a mirror image with the opposite sense has the same lengths as the curve
-        agreement = (self.lengths @ np.abs(wanted[:2]).T.astype(np.float32)).max(axis=1)
+        agreement = (self.lengths @ np.abs(goals[:2]).T.astype(np.float32)).max(axis=1)
         bound: AnyArray = np.sqrt(np.maximum(2.0 - 2.0 * agreement - _SINGLE, 0.0))
         return bound
 
     def shapes_of(self, index: IndexArray) -> ComplexArray:
         """Some of the shapes, (K, 16) complex; half precision takes them off the norm 1."""
-        found = np.ascontiguousarray(self.shapes[index], dtype=float).view(complex)
-        return np.asarray(found / np.linalg.norm(found, axis=1, keepdims=True))
+        shapes = np.ascontiguousarray(self.shapes[index], dtype=float).view(complex)
+        return np.asarray(shapes / np.linalg.norm(shapes, axis=1, keepdims=True))
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -202,13 +202,13 @@ class PathAtlas:
         Lengths of coefficients differ by no more than the coefficients: this lower bound of the
         distance chooses what is compared exactly, until no other design can be nearer.
         """
-        if told := out_of_bounds(curve):
-            raise InputError(f"the curve {told}")
+        if problem := out_of_bounds(curve):
+            raise InputError(f"the curve {problem}")
         shape = coefficients(curve[None])[0][0]
         if not np.isfinite(shape).all():
             raise InputError("the curve is one point: draw a curve that encloses an area")
-        wanted = in_ways(shape)
-        bound = np.concatenate([family.bounds(wanted) for family in self.families])
+        goals = in_ways(shape)
+        bound = np.concatenate([family.bounds(goals) for family in self.families])
         first = np.cumsum([0, *map(len, self.families)])
         best: list[tuple[float, int, int]] = []
         done, many = 0, _BEGIN
@@ -218,11 +218,11 @@ class PathAtlas:
             parts = np.split(index, np.searchsorted(index, first[1:-1]))
             shapes = np.concatenate(
                 [
-                    family.shapes_of(own - start)
-                    for family, own, start in zip(self.families, parts, first[:-1], strict=True)
+                    family.shapes_of(index - start)
+                    for family, index, start in zip(self.families, parts, first[:-1], strict=True)
                 ]
             )
-            ways = np.stack([distances(shapes, own)[0] for own in wanted])
+            ways = np.stack([distances(shapes, goal)[0] for goal in goals])
             way = ways.argmin(axis=0)
             best += zip(ways.min(axis=0).tolist(), index.tolist(), way.tolist(), strict=True)
             best = sorted(best)[:count]
@@ -230,12 +230,12 @@ class PathAtlas:
             if enough or len(order) == len(bound):
                 break
             done, many = many, _MORE * many
-        found = []
+        nearest = []
         for far, k, way in best:
             place = int(np.searchsorted(first, k, side="right")) - 1
-            family, own = self.families[place], k - int(first[place])
-            found.append(Nearest(family=family, index=own, distance=far, way=way))
-        return found
+            family, number = self.families[place], k - int(first[place])
+            nearest.append(Nearest(family=family, index=number, distance=far, way=way))
+        return nearest
 
     def write(self, path: Path) -> None:
         """Write the atlas to a file (.npz), completely or not at all."""
@@ -273,10 +273,10 @@ def read_atlas(path: Path = SHIPPED) -> PathAtlas:
     except FileNotFoundError:
         raise InputError(f'there is no atlas "{path}"') from None
     except (OSError, KeyError, ValueError, BadZipFile):
-        told = (
+        message = (
             f'"{path}" is no atlas of paths: make one with "linkwork atlas --index STORE -o FILE"'
         )
-        raise InputError(told) from None
+        raise InputError(message) from None
     return PathAtlas(
         families=tuple(
             AtlasFamily(
@@ -310,8 +310,8 @@ def placed_on_curve(near: Nearest, curve: ComplexArray, name: str) -> tuple[Link
         raise InputError("an atlas can place mechanisms of points and links with one input only")
     others = sorted({type(part).title for part in described.parts if not isinstance(part, Slider)})
     if others:
-        told = "an atlas can place mechanisms of links and sliders only, not with parts of the kind"
-        raise InputError(f"{told} {', '.join(others)}")
+        text = "an atlas can place mechanisms of links and sliders only, not with parts of the kind"
+        raise InputError(f"{text} {', '.join(others)}")
     numbers = {number_named(described, key): value for key, value in near.numbers.items()}
     design = with_numbers(described, numbers)
     assert isinstance(design, Linkage)
@@ -319,9 +319,9 @@ def placed_on_curve(near: Nearest, curve: ComplexArray, name: str) -> tuple[Link
     mirrored = near.is_mirrored
     path = motion.trace(near.family.point)[:-1]
     shape, centre, size = coefficients((path.conj() if mirrored else path)[None])
-    wanted, goal, extent = coefficients(curve[None])
+    goals, goal, extent = coefficients(curve[None])
     back = WAYS[near.way][0]
-    travelled = in_ways(wanted[0])[1 if back else 0]
+    travelled = in_ways(goals[0])[1 if back else 0]
     _, shift_along, turn = distances(shape, travelled)
     # a distance from the agreement of shapes would be exact to the root of rounding only
     fitted = shape[0] * np.exp(1j * (HARMONICS * shift_along[0] + turn[0]))

@@ -89,27 +89,27 @@ def _family_of_store(
         arrays = chunk.arrays
         z = arrays[f"{point}.x"] + 1j * arrays[f"{point}.y"]
         good = arrays["passed"] & _are_closed(z)
-        own = coefficients(z[good][:, :-1])[0]
+        shape = coefficients(z[good][:, :-1])[0]
         columns = {name: arrays[name][good] for name in varied} | constants
         values = np.stack(np.broadcast_arrays(*columns.values()), axis=1)
-        there = np.isfinite(own).all(axis=1)
+        there = np.isfinite(shape).all(axis=1)
         # chunk by chunk in the precision that is kept: a million designs fit in little memory
         numbers.append(values[there].astype(np.float32))
-        shapes.append(np.ascontiguousarray(own[there]).view(float).astype(np.float16))
+        shapes.append(np.ascontiguousarray(shape[there]).view(float).astype(np.float16))
     if damaged:
         raise InputError(
             f'damaged chunks of "{path}": {damaged}; repeat the command of its study, '
             "which computes them again"
         )
-    found = np.concatenate(numbers)
-    if not len(found):
+    lengths = np.concatenate(numbers)
+    if not len(lengths):
         raise InputError(f'"{path}" has no closed path: keep it over a whole turn of the crank')
     family = AtlasFamily(
         title=attributes["mechanism_name"],
         mechanism=known["mechanism"],
         point=point,
         names=names,
-        numbers=found,
+        numbers=lengths,
         shapes=np.concatenate(shapes),
     )
     return family, stored

@@ -1,1 +1,1 @@
-"""Whether a design is sound: its branch, circuit, order, driven range and wishes, and why not."""
+"""Verdicts on designs: branch, circuit, order, driven range and requirements of the task."""

@@ -71,8 +71,8 @@ def defects_by_circuits(
 class _Start:
     """A first position (N,), and how many positions its branches pass at most.
 
-    ``circuit``: its own, once it is followed. ``doubt``: that they end at one of the positions, to
-    rounding, so that they may not pass it.
+    ``circuit``: the circuit of the configuration, once it is followed. ``doubt``: the circuit ends
+    at a position, to rounding, so that it may not pass this position.
     """
 
     v: Array
@@ -88,10 +88,10 @@ class _Search:
         self.places = places
         names = self.model.compiled.points.names
         # names that do not exist have a message of their own
-        found = [
+        leads = [
             self.model.quantities.find(f"{name}.x").own.name for one in places[:1] for name in one
         ]
-        self._numbers = [names.index(name.removesuffix(".x")) for name in found]
+        self._numbers = [names.index(name.removesuffix(".x")) for name in leads]
         self.explorer = explorer_of(drive)
         self._lists: dict[int, Assemblies] = {}
         self._ways: dict[CurveBranch, float] = {}
@@ -103,11 +103,11 @@ class _Search:
         self._check_equal_inputs()
         guess = self._guess()
         way = None if guess is None else straight_way(self.drive, guess, self.values[:1])
-        mine = [] if way is None or np.isnan(way.v).any() else [way.v[0]]
-        if any(self._is_straight(v) for v in mine):
+        known = [] if way is None or np.isnan(way.v).any() else [way.v[0]]
+        if any(self._is_straight(v) for v in known):
             return ()
         others = [
-            v for v in self._regular_starts() if not any(coincide(self.leads, v, w) for w in mine)
+            v for v in self._regular_starts() if not any(coincide(self.leads, v, w) for w in known)
         ]
         if any(self._is_straight(v) for v in others):
             return ()
@@ -129,8 +129,8 @@ class _Search:
             if self.values[j] != self.values[k] or all(abs(z - w) <= far for z, w in places):
                 continue
             if any(same_position(self.leads, *p) for p in product(*map(self._nearest, (j, k)))):
-                told = f"positions {j + 1} and {k + 1} differ, but have one input and one nearest "
-                raise InputError(f"{told}configuration: correct one of them")
+                text = f"positions {j + 1} and {k + 1} differ, but have one input and one nearest "
+                raise InputError(f"{text}configuration: correct one of them")
 
     def _defect_behind(self, leading: Sequence[_Start], most: int) -> Defect:
         """The defect between the last position that any branch passes and the next one.
@@ -138,14 +138,14 @@ class _Search:
         A change of branch is the mildest; whether other branches change circuits is no matter then.
         """
         doubts = [start.doubt for start in leading if start.doubt is not None]
-        found: list[Defect] = []
+        changes: list[Defect] = []
         for start in leading:
             if start.doubt is None:
                 circuit = start.circuit or FollowedCircuit(self.explorer, start.v)
-                found.append(self._change(circuit, most))
-                if found[-1].kind is DefectKind.BRANCH:
-                    return found[-1]
-        return min([*doubts, *found], key=_claim)
+                changes.append(self._change(circuit, most))
+                if changes[-1].kind is DefectKind.BRANCH:
+                    return changes[-1]
+        return min([*doubts, *changes], key=_claim)
 
     def _guess(self) -> Array | None:
         """The position (N,) of the guess, if the input can lead there."""
@@ -279,29 +279,29 @@ class _Search:
             return _not_proved(f"the circuit of position {k} was not followed to its end")
         return _changes(DefectKind.CIRCUIT, k)
 
-    def _are_joined(self, mine: FollowedCircuit, near: Sequence[Array]) -> bool | None:
+    def _are_joined(self, first: FollowedCircuit, near: Sequence[Array]) -> bool | None:
         """Whether one of some positions (N,) is on a circuit; ``None`` if the circuits cannot be
         followed to their ends.
 
-        Two circuits are one where their arcs meet at a change point, and they are two as soon as
-        one of them is whole without the other's position.
+        Two circuits are the same if their arcs meet at a change point. They differ if one is
+        complete without the other's position.
         """
-        if any(mine.has(v) for v in near):
+        if any(first.has(v) for v in near):
             return True
         others: list[FollowedCircuit] = []
-        for v in () if mine.is_whole else near:
+        for v in () if first.is_whole else near:
             other = FollowedCircuit(self.explorer, v)
             if not any(other.meets(one) for one in others):
                 others.append(other)
         while True:
-            for one in (mine, *others):
+            for one in (first, *others):
                 one.join_arcs()
-            if any(mine.meets(other) for other in others):
+            if any(first.meets(other) for other in others):
                 return True
             others = [other for other in others if not other.is_whole]
-            if mine.is_whole or not others:
+            if first.is_whole or not others:
                 return False
-            ahead = [one for one in (mine, *others) if not one.ended]
+            ahead = [one for one in (first, *others) if not one.ended]
             if not ahead:
                 return None
             # from both sides

@@ -1,4 +1,4 @@
-"""The defects of designs: what keeps a mechanism from doing its task."""
+"""The defects of designs: why a mechanism does not do its task."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ from linkwork.synthesis.tasks.task import Task
 
 
 class DefectKind(Enum):
-    """What is wrong with a design; the value is what a count of them says.
+    """A defect of a design; the value is its name in a table of counts.
 
     Examples
     --------
@@ -64,9 +64,9 @@ class Verdicts:
         The shortest link [length].
     arm : (D,)
         The longest distance of the guided point from a moving pivot [length].
-    found : Mapping[DefectKind, (D,) bool]
-        Which designs have the defect. Others than circuit and branch are noted of designs on one
-        branch only, obstacles of those with at most one defect.
+    defects : Mapping[DefectKind, (D,) bool]
+        Which designs have the defect. Defects other than circuit and branch are decided for
+        designs that stay on one branch, obstacles for designs with at most one other defect.
     """
 
     loops: DrivenLoops
@@ -75,20 +75,20 @@ class Verdicts:
     size: Array
     shortest: Array
     arm: Array
-    found: dict[DefectKind, BoolArray]
+    defects: dict[DefectKind, BoolArray]
 
     @property
     def sound(self) -> BoolArray:
         """Designs without any defect, (D,)."""
-        return np.asarray(~np.any(list(self.found.values()), axis=0))
+        return np.asarray(~np.any(list(self.defects.values()), axis=0))
 
 
-def judge(given: Candidates, drive: Drive, wishes: Wishes) -> Verdicts:
+def judge(group: Candidates, drive: Drive, wishes: Wishes) -> Verdicts:
     """Decide every defect of designs by signs with bounds of their errors.
 
     Parameters
     ----------
-    given : Candidates
+    group : Candidates
     drive : Drive
     wishes : Wishes
         In radians and units of length.
@@ -102,41 +102,41 @@ def judge(given: Candidates, drive: Drive, wishes: Wishes) -> Verdicts:
     T. R. Chase, J. A. Mirth: Circuits and branches of single-degree-of-freedom planar linkages.
     Journal of Mechanical Design 115 (1993) 223-230.
     """
-    loops = driven_loops(given, drive)
+    loops = driven_loops(group, drive)
     travel = travel_of(loops, wishes.range, wishes.ordered, wishes.beyond)
-    found: dict[DefectKind, BoolArray] = {}
+    defects: dict[DefectKind, BoolArray] = {}
     open_ = travel.decided.copy()
     for kind, wrong in (
         (DefectKind.CIRCUIT, travel.circuit != NOWHERE),
         (DefectKind.BRANCH, travel.branch != NOWHERE),
     ):
-        found[kind] = open_ & wrong
+        defects[kind] = open_ & wrong
         open_ &= ~wrong
-    found[DefectKind.ORDER] = open_ & travel.out_of_order
-    found[DefectKind.RANGE] = open_ & (travel.unreached != NOWHERE)
+    defects[DefectKind.ORDER] = open_ & travel.out_of_order
+    defects[DefectKind.RANGE] = open_ & (travel.unreached != NOWHERE)
     transmission = loops.least_transmission(travel.first, travel.last)
-    lengths = _lengths(given)
+    lengths = _lengths(group)
     size, shortest = lengths.max(axis=1), lengths.min(axis=1)
-    found[DefectKind.TRANSMISSION] = open_ & ~(transmission >= wishes.transmission)
-    found[DefectKind.PIVOTS] = open_ & ~_pivots_inside(given, wishes)
+    defects[DefectKind.TRANSMISSION] = open_ & ~(transmission >= wishes.transmission)
+    defects[DefectKind.PIVOTS] = open_ & ~_pivots_inside(group, wishes)
     arm = np.maximum(
-        np.abs(given.guided - given.moving_a)[:, 0], np.abs(given.guided - given.moving_b)[:, 0]
+        np.abs(group.guided - group.moving_a)[:, 0], np.abs(group.guided - group.moving_b)[:, 0]
     )
-    if not given.kind.has_crank:
+    if not group.kind.has_crank:
         # a rod between two guides may be short, and hold the guided point far away
         size = np.maximum(size, arm)
-    found[DefectKind.LENGTHS] = open_ & ~(wishes.allows(shortest, size) & (arm <= wishes.longest))
-    found[DefectKind.TOLERANCE] = open_ & wishes.exceeds(given.guided, given.error).any(axis=1)
-    # a design with one other defect tells what that wish costs, if nothing else is wrong
-    nearly = open_ & ~found[DefectKind.RANGE] & (np.sum(list(found.values()), axis=0) <= 1)
-    met = np.zeros(len(given), dtype=bool)
+    defects[DefectKind.LENGTHS] = open_ & ~(wishes.allows(shortest, size) & (arm <= wishes.longest))
+    defects[DefectKind.TOLERANCE] = open_ & wishes.exceeds(group.guided, group.error).any(axis=1)
+    # a design with one other defect shows which requirement alone rejects it
+    nearly = open_ & ~defects[DefectKind.RANGE] & (np.sum(list(defects.values()), axis=0) <= 1)
+    met = np.zeros(len(group), dtype=bool)
     if wishes.obstacles.size and nearly.any():
         index = np.flatnonzero(nearly)
-        met[index] = meets_obstacle(given.take(index), drive, loops, travel, index, wishes)
-    found[DefectKind.OBSTACLE] = met
+        met[index] = meets_obstacle(group.take(index), drive, loops, travel, index, wishes)
+    defects[DefectKind.OBSTACLE] = met
     # a bound of zero leaves it open whether the range ends in front of a dead point
-    found[DefectKind.NOT_PROVED] = ~travel.decided | (
-        open_ & (transmission == 0.0) & ~found[DefectKind.RANGE]
+    defects[DefectKind.NOT_PROVED] = ~travel.decided | (
+        open_ & (transmission == 0.0) & ~defects[DefectKind.RANGE]
     )
     return Verdicts(
         loops=loops,
@@ -146,37 +146,37 @@ def judge(given: Candidates, drive: Drive, wishes: Wishes) -> Verdicts:
         size=size,
         shortest=shortest,
         arm=arm,
-        found=found,
+        defects=defects,
     )
 
 
-def _lengths(given: Candidates) -> Array:
+def _lengths(loops: Candidates) -> Array:
     """The lengths of crank, coupler, and of a four-bar rocker and ground, (D, 2 to 4).
 
     A coupler that slides in a block is as long as its farthest position needs.
     """
-    if given.kind is LoopKind.RAPSON:
-        return np.asarray(np.abs(given.fixed_b[:, None] - given.moving_a).max(axis=1)[:, None])
-    if not given.kind.has_crank:
-        rod = np.abs(given.moving_b[:, 0] - given.moving_a[:, 0])
-        ground = np.abs(given.fixed_b - given.fixed_a)
-        return np.stack([rod, ground] if given.kind is LoopKind.OLDHAM else [rod], axis=1)
-    if given.kind is LoopKind.INVERTED:
-        reach = np.abs(given.fixed_b[:, None] - given.moving_a).max(axis=1)
-        ground = np.abs(given.fixed_b - given.fixed_a)
-        return np.stack([np.abs(given.moving_a[:, 0] - given.fixed_a), ground, reach], axis=1)
-    lengths = [given.moving_a[:, 0] - given.fixed_a, given.moving_b[:, 0] - given.moving_a[:, 0]]
-    if given.kind is LoopKind.FOUR_BAR:
-        lengths += [given.moving_b[:, 0] - given.fixed_b, given.fixed_b - given.fixed_a]
+    if loops.kind is LoopKind.RAPSON:
+        return np.asarray(np.abs(loops.fixed_b[:, None] - loops.moving_a).max(axis=1)[:, None])
+    if not loops.kind.has_crank:
+        rod = np.abs(loops.moving_b[:, 0] - loops.moving_a[:, 0])
+        ground = np.abs(loops.fixed_b - loops.fixed_a)
+        return np.stack([rod, ground] if loops.kind is LoopKind.OLDHAM else [rod], axis=1)
+    if loops.kind is LoopKind.INVERTED:
+        reach = np.abs(loops.fixed_b[:, None] - loops.moving_a).max(axis=1)
+        ground = np.abs(loops.fixed_b - loops.fixed_a)
+        return np.stack([np.abs(loops.moving_a[:, 0] - loops.fixed_a), ground, reach], axis=1)
+    lengths = [loops.moving_a[:, 0] - loops.fixed_a, loops.moving_b[:, 0] - loops.moving_a[:, 0]]
+    if loops.kind is LoopKind.FOUR_BAR:
+        lengths += [loops.moving_b[:, 0] - loops.fixed_b, loops.fixed_b - loops.fixed_a]
     return np.abs(np.stack(lengths, axis=1))
 
 
-def _pivots_inside(given: Candidates, wishes: Wishes) -> BoolArray:
+def _pivots_inside(candidates: Candidates, wishes: Wishes) -> BoolArray:
     """Whether all fixed pivots are in the region or, to their errors, on its border."""
-    inside = np.ones(len(given), dtype=bool)
-    for name, pivot in (("A0", given.fixed_a), ("B0", given.fixed_b)):
-        if name in given.kind.pivots:
-            inside &= wishes.within_region(pivot, given.error)
+    inside = np.ones(len(candidates), dtype=bool)
+    for name, pivot in (("A0", candidates.fixed_a), ("B0", candidates.fixed_b)):
+        if name in candidates.kind.pivots:
+            inside &= wishes.within_region(pivot, candidates.error)
     return inside
 
 
@@ -211,10 +211,10 @@ class Defect:
 
 
 def defects_of(
-    task: Task, given: Candidates, drive: Drive, verdicts: Verdicts, k: int
+    task: Task, candidates: Candidates, drive: Drive, verdicts: Verdicts, k: int
 ) -> tuple[Defect, ...]:
     """All defects of the k-th design, in the order of :class:`DefectKind`."""
-    words = _Words(task=task, given=given, drive=drive, verdicts=verdicts, k=k)
+    words = _DefectMessages(task=task, candidates=candidates, drive=drive, verdicts=verdicts, k=k)
     return tuple(words.defects())
 
 
@@ -225,9 +225,9 @@ def tolerance_message(away: Array, reach: Array, unit: str) -> str:
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
-class _Words:
+class _DefectMessages:
     task: Task
-    given: Candidates
+    candidates: Candidates
     drive: Drive
     verdicts: Verdicts
     k: int
@@ -245,8 +245,8 @@ class _Words:
             DefectKind.OBSTACLE: self._obstacle,
             DefectKind.NOT_PROVED: self._not_proved,
         }
-        for kind, found in self.verdicts.found.items():
-            if found[self.k]:
+        for kind, wrong in self.verdicts.defects.items():
+            if wrong[self.k]:
                 message, between = writers[kind]()
                 yield Defect(kind=kind, between=between, message=message)
 
@@ -287,15 +287,15 @@ class _Words:
     def _transmission(self) -> tuple[str, None]:
         unit = self.task.angle
         least = rounded_down(unit.from_radians(float(self.verdicts.transmission[self.k])), 4)
-        wanted = self.task.wanted.transmission
+        bound = self.task.wanted.transmission
         return (
-            f"transmission angle down to {least:.4g}{unit.sign}, wanted {wanted:g}{unit.sign}",
+            f"transmission angle down to {least:.4g}{unit.sign}, wanted {bound:g}{unit.sign}",
             None,
         )
 
     def _pivots(self) -> tuple[str, None]:
-        both = {"A0": self.given.fixed_a[self.k], "B0": self.given.fixed_b[self.k]}
-        pivots = {name: both[name] for name in self.given.kind.pivots}
+        both = {"A0": self.candidates.fixed_a[self.k], "B0": self.candidates.fixed_b[self.k]}
+        pivots = {name: both[name] for name in self.candidates.kind.pivots}
         places = " and ".join(f"{n} at ({z.real:.6g}, {z.imag:.6g})" for n, z in pivots.items())
         return f"fixed pivots {places} are not all in their region", None
 
@@ -310,7 +310,7 @@ class _Words:
         positions = self.task.positions
         points = np.array([complex(*position.point) for position in positions])
         reach = np.array([position.tolerance for position in positions])
-        away = np.abs(self.given.guided[self.k] - points)
+        away = np.abs(self.candidates.guided[self.k] - points)
         return tolerance_message(away, reach, self.task.length), None
 
     def _obstacle(self) -> tuple[str, None]:
@@ -318,7 +318,7 @@ class _Words:
 
     def _not_proved(self) -> tuple[str, None]:
         loops, k = self.verdicts.loops, self.k
-        if not np.isfinite(self.given.error[k]):
+        if not np.isfinite(self.candidates.error[k]):
             return "not proved: the solution nearly coincides with another one", None
         limits = min(abs(loops.upper[k]), abs(loops.lower[k]))
         if not limits > loops.limit_error[k]:
@@ -362,7 +362,7 @@ class _Words:
 @internal("linkage", "kinds", "task")
 @dataclass(frozen=True, kw_only=True, eq=False, repr=False)
 class JudgedDesign(ABC):
-    """A mechanism for a task, and what keeps it from doing it.
+    """A mechanism for a task, with its defects.
 
     Parameters
     ----------
@@ -370,7 +370,7 @@ class JudgedDesign(ABC):
     number : int
         Its rank among the sound designs from 1, or its place among the refused ones.
     delivered : bool
-        Whether it is sound and among the wanted number of designs.
+        Whether it is sound and among the designs that the task delivers.
     score : float
         The weighted score of the ranking, 0 to 1.
 
@@ -389,9 +389,9 @@ class JudgedDesign(ABC):
     score: float = np.nan
 
     def __repr__(self) -> str:
-        found = ", ".join(kind.value for kind in self.kinds) or "sound"
+        defects = ", ".join(kind.value for kind in self.kinds) or "sound"
         kind, number = type(self).__name__, self.number
-        return f"<{kind} {number}: {self.mechanism} driven at {self.driven}, {found}>"
+        return f"<{kind} {number}: {self.mechanism} driven at {self.driven}, {defects}>"
 
     @property
     @abstractmethod
@@ -405,7 +405,7 @@ class JudgedDesign(ABC):
 
     @property
     def numbers(self) -> dict[str, float]:
-        """The numbers that vary [file units]; none where all of them are found."""
+        """The numbers that vary [file units]; none for solvers that list all designs."""
         return {}
 
     @property

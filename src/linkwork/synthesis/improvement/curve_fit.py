@@ -11,10 +11,10 @@ from linkwork.core.foundation.arrays import Array, BoolArray, ComplexArray, Inde
 from linkwork.core.foundation.units import FULL_TURN
 from linkwork.synthesis.improvement.curve_starts import CurveStarts, best_starts
 from linkwork.synthesis.improvement.curves import CouplerCurves, CurveGoal, FourBarCurves
-from linkwork.synthesis.lane_least_squares import LaneFit, OwnVariables, Residuals, starts_of
+from linkwork.synthesis.lane_least_squares import LaneFit, Residuals, RowVariables, starts_of
 from linkwork.synthesis.lane_problems import LaneProblem, Multipliers, different
 
-#: By how much fits exceed a wanted transmission angle [rad]: between rows, and where their last
+#: By how much fits exceed the required transmission angle [rad]: between rows, and where their last
 #: steps end, designs fell short of it by up to 2e-5.
 ANGLE_MARGIN = 1e-4
 
@@ -79,27 +79,27 @@ class CurveConstraints:
     def _constraints(self, x: Array) -> tuple[Array, Array]:
         """h (D, K) and its derivatives, in lengths."""
         goal, count = self.goal, len(self.kind.names)
-        found, slopes = [np.zeros((len(x), 0))], [np.zeros((len(x), 0, x.shape[1]))]
+        values, slopes = [np.zeros((len(x), 0))], [np.zeros((len(x), 0, x.shape[1]))]
         margin = _MARGIN * goal.size
 
         def add(h: Array, by_x: Array) -> None:
             wide = np.zeros((*h.shape, x.shape[1]))
             wide[:, :, :count] = by_x
-            found.append(h + margin)
+            values.append(h + margin)
             slopes.append(wide)
 
-        own = x[:, :count]
+        dimensions = x[:, :count]
         if goal.must_turn:
-            add(*self._curves.limits(own))
-            add(*self._transmission(own))
+            add(*self._curves.limits(dimensions))
+            add(*self._transmission(dimensions))
         if goal.limited_range is not None:
-            add(*self._transmission_in(own, *goal.limited_range))
-        lengths, by_x = self._lengths(own)
+            add(*self._transmission_in(dimensions, *goal.limited_range))
+        lengths, by_x = self._lengths(dimensions)
         if goal.shortest > 0.0:
             add(goal.shortest - lengths, -by_x)
         if np.isfinite(goal.longest):
             add(lengths - goal.longest, by_x)
-            arms, arms_by_x = self._arms(own)
+            arms, arms_by_x = self._arms(dimensions)
             add(arms - goal.longest, arms_by_x)
         if np.isfinite(goal.ratio):
             rows = np.arange(len(x))
@@ -107,7 +107,7 @@ class CurveConstraints:
             h = lengths[rows, longest] - goal.ratio * lengths[rows, shortest]
             slope = by_x[rows, longest] - goal.ratio * by_x[rows, shortest]
             add(h[:, None], slope[:, None])
-        return np.concatenate(found, axis=1), np.concatenate(slopes, axis=1)
+        return np.concatenate(values, axis=1), np.concatenate(slopes, axis=1)
 
     def _lengths(self, x: Array) -> tuple[Array, Array]:
         """The lengths of links, of a four-bar the ground too, (D, L), and by x."""
@@ -150,9 +150,9 @@ class CurveConstraints:
         """
         cosine = np.cos(self._least_angle)
         if self.kind is not FourBarCurves:
-            found, by_x = self._curves.limits(x)
+            limits, by_x = self._curves.limits(x)
             by_x[:, :, 3] *= cosine
-            return found + (1.0 - cosine) * x[:, 3, None], by_x
+            return limits + (1.0 - cosine) * x[:, 3, None], by_x
         g, along = FourBarCurves.ground(x)
         a, c, b = (x[:, k, None] for k in (4, 5, 6))
         sense = np.array([1.0, -1.0])
@@ -237,15 +237,15 @@ def fit_curve(
     An interruption of the draws improves the few best ones so far, one of the steps ends these.
     """
     whole = (1.0 + _DRAWING) * sum(share * steps for share, steps, _ in _STAGES)
-    drawing, asked = _DRAWING / (1.0 + _DRAWING), starts
+    drawing, requested = _DRAWING / (1.0 + _DRAWING), starts
     tell = progress or (lambda part: None)
     draws = _DRAWS * starts
-    found, drawn = best_starts(kind, goal, draws, starts, rng, lambda part: tell(part * drawing))
+    best, drawn = best_starts(kind, goal, draws, starts, rng, lambda part: tell(part * drawing))
     if not drawn:
-        found, starts = found.take(np.arange(min(_FEWEST, len(found.x)))), _FEWEST
-    problem = _CurveProblem(kind, goal, found)
+        best, starts = best.take(np.arange(min(_FEWEST, len(best.x)))), _FEWEST
+    problem = _CurveProblem(kind, goal, best)
     problem.work.whole, problem.work.done = whole, drawing * whole
-    # what has stopped the draws would stop this too
+    # an interruption of the draws would interrupt this too
     problem.work.tell = tell if drawn else None
     fit = problem.begun
     keep = np.arange(len(fit))
@@ -259,7 +259,7 @@ def fit_curve(
             most = max(_FEWEST, round(_STAGES[-1][0] * starts))
             keep = keep[np.argsort(fit.total[keep], kind="stable")[:most]]
             break
-    return problem.result(fit, keep, asked, finished=drawn and not fit.interrupted)
+    return problem.result(fit, keep, requested, finished=drawn and not fit.interrupted)
 
 
 class _CurveProblem(LaneProblem):
@@ -267,18 +267,18 @@ class _CurveProblem(LaneProblem):
 
     most_lanes = 128
 
-    def __init__(self, kind: type[CouplerCurves], goal: CurveGoal, found: CurveStarts) -> None:
+    def __init__(self, kind: type[CouplerCurves], goal: CurveGoal, best: CurveStarts) -> None:
         self.kind, self.goal = kind, goal
-        self.curves, self.way = kind(found.side), found.way
-        self.constraints = CurveConstraints(kind, goal, len(found.side))
-        #: Crank angles at which own variables are 0: the begin of the driven range.
+        self.curves, self.way = kind(best.side), best.way
+        self.constraints = CurveConstraints(kind, goal, len(best.side))
+        #: Crank angles at which row variables are 0: the begin of the driven range.
         self.origin = 0.0 * self.way
         width = np.inf
         if goal.range is not None:
             self.origin = np.where(self.way > 0.0, *goal.range)
             width = goal.range[1] - goal.range[0]
         gap = min(_GAP, 0.5 * width / len(goal.points))
-        own = OwnVariables(
+        row_variables = RowVariables(
             least=-width if goal.range is None else 0.0,
             most=width,
             in_order=goal.ordered and goal.inputs is None,
@@ -286,34 +286,34 @@ class _CurveProblem(LaneProblem):
             span=FULL_TURN - gap,
         )
         none = np.zeros(0, dtype=bool)
-        super().__init__(goal.box(kind), own, len(found.side), len(goal.points), none)
-        self.begun = starts_of(self._entries(found), self._own(found))
+        super().__init__(goal.box(kind), row_variables, len(best.side), len(goal.points), none)
+        self.begun = starts_of(self._entries(best), self._row_variables(best))
 
     @property
     def multipliers(self) -> list[Multipliers]:
         """Those of all constraints."""
         return self.constraints.multipliers
 
-    def _entries(self, found: CurveStarts) -> Array:
+    def _entries(self, best: CurveStarts) -> Array:
         """Parameters of starts, (D, P)."""
         if self.goal.inputs is None:
-            return found.x
-        turned = (found.t - self.goal.inputs).mean(axis=1, keepdims=True)
+            return best.x
+        turned = (best.t - self.goal.inputs).mean(axis=1, keepdims=True)
         low, high = self.goal.input_bounds
         if self.goal.range is not None:
             # whole turns that bring starts nearest to their bounds
             turned += FULL_TURN * np.round((0.5 * (low + high) - turned) / FULL_TURN)
-        return np.concatenate([found.x, turned], axis=1)
+        return np.concatenate([best.x, turned], axis=1)
 
-    def _own(self, found: CurveStarts) -> Array:
-        """Own variables of starts: crank angles, unless they are given."""
+    def _row_variables(self, best: CurveStarts) -> Array:
+        """Row variables of starts: crank angles, unless the task gives them."""
         if self.goal.inputs is not None:
-            return np.zeros((len(found.x), 0))
-        return np.asarray(found.t + self.way[:, None] * (self._turns(found) - self.origin[:, None]))
+            return np.zeros((len(best.x), 0))
+        return np.asarray(best.t + self.way[:, None] * (self._turns(best) - self.origin[:, None]))
 
-    def _turns(self, found: CurveStarts) -> Array:
+    def _turns(self, best: CurveStarts) -> Array:
         """The whole turns (D, 1) that bring the crank's angles to the driven range [rad]."""
-        angles = self.way[:, None] * found.t
+        angles = self.way[:, None] * best.t
         turns, _ = self.goal.turned_inside(angles.min(axis=1), angles.max(axis=1))
         return turns[:, None]
 

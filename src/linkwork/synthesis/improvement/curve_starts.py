@@ -1,7 +1,7 @@
-"""Starts for curves: mechanisms drawn at random whose curves resemble the wanted one best.
+"""Starts of a curve fit: of mechanisms drawn at random, those whose curves are most similar.
 
 A drawn curve may be moved, turned and enlarged freely. With complex points q of the curve and z of
-the goal the best such motion is a linear fit, eq. (154); what it leaves ranks the draws. Without
+the goal the best such motion is a linear fit, eq. (154); its residual ranks the draws. Without
 timing, points correspond by the shares of arc length at which they lie.
 """
 
@@ -60,7 +60,7 @@ class CurveStarts:
 
 def random_loops(kind: type[CouplerCurves], count: int, rng: np.random.Generator) -> Array:
     """Dimensions (D, P) with a crank that turns fully, A0 at 0 and B0 or the line near 1."""
-    found: list[Array] = []
+    loops: list[Array] = []
     left = count
     while left > 0:
         drawn = 4 * left + 16
@@ -74,9 +74,9 @@ def random_loops(kind: type[CouplerCurves], count: int, rng: np.random.Generator
             columns = [nothing, nothing, size[:, 0], size[:, 1], offset, nothing, p, q]
         x = np.stack(columns, axis=1)
         turning = (kind(nothing + 1.0).limits(x)[0] < 0.0).all(axis=1)
-        found.append(x[turning][:left])
-        left -= len(found[-1])
-    return np.concatenate(found)
+        loops.append(x[turning][:left])
+        left -= len(loops[-1])
+    return np.concatenate(loops)
 
 
 def best_starts(
@@ -118,9 +118,9 @@ def _spread(
     size = goal.size * np.exp(rng.normal(0.3, 0.8, count))
     factor = size * np.exp(1j * rng.uniform(0.0, FULL_TURN, count))
     away = rng.normal(0.0, 1.5, (2, count)) * goal.size
-    box, own = goal.box(kind), len(kind.names)
-    found = kind(np.ones(count)).moved(x, goal.points.mean() + away[0] + 1j * away[1], factor)
-    return np.asarray(np.clip(found, box.least[:own], box.most[:own]))
+    box, dimensions = goal.box(kind), len(kind.names)
+    moved = kind(np.ones(count)).moved(x, goal.points.mean() + away[0] + 1j * away[1], factor)
+    return np.asarray(np.clip(moved, box.least[:dimensions], box.most[:dimensions]))
 
 
 def _compared(
@@ -196,14 +196,14 @@ def _by_arc_length(q: ComplexArray, angles: Array, way: float) -> tuple[ComplexA
     turns = np.concatenate([angles, angles[:, :1] + way * FULL_TURN], axis=1)
     length = np.cumsum(np.abs(np.diff(closed, axis=1)), axis=1)
     length = np.concatenate([np.zeros((len(q), 1)), length], axis=1)
-    found, places = np.full_like(q, np.nan), np.full(q.shape, np.nan)
+    points, places = np.full_like(q, np.nan), np.full(q.shape, np.nan)
     for k in np.flatnonzero(np.isfinite(length[:, -1]) & (length[:, -1] > 0.0)):
-        wanted = np.linspace(0.0, length[k, -1], _SAMPLES, endpoint=False)
-        places[k] = np.interp(wanted, length[k], turns[k])
-        found[k] = np.interp(wanted, length[k], closed[k].real) + 1j * np.interp(
-            wanted, length[k], closed[k].imag
+        along = np.linspace(0.0, length[k, -1], _SAMPLES, endpoint=False)
+        places[k] = np.interp(along, length[k], turns[k])
+        points[k] = np.interp(along, length[k], closed[k].real) + 1j * np.interp(
+            along, length[k], closed[k].imag
         )
-    return found, places
+    return points, places
 
 
 def _fitted(

@@ -24,7 +24,7 @@ from linkwork.core.results.motion import Motion
 from linkwork.core.results.quantity import Kind
 from linkwork.synthesis.improvement.goals import PathGoal
 from linkwork.synthesis.improvement.settings import Points
-from linkwork.synthesis.lane_least_squares import Box, OwnVariables
+from linkwork.synthesis.lane_least_squares import Box, RowVariables
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -178,23 +178,23 @@ class FourBarCurves(CouplerCurves):
         """g + a - (b + c) and |b - c| - |g - a|, which end the branch, and by x."""
         g, along = self.ground(x)
         a, c, b = x[:, 4], x[:, 5], x[:, 6]
-        found = np.stack([g + a - (b + c), np.abs(b - c) - np.abs(g - a)], axis=1)
-        by_x = np.zeros((*found.shape, 9))
+        limits = np.stack([g + a - (b + c), np.abs(b - c) - np.abs(g - a)], axis=1)
+        by_x = np.zeros((*limits.shape, 9))
         far, near = np.sign(b - c), np.sign(g - a)
         by_x[:, 0, :2], by_x[:, 0, 2:4] = -along, along
         by_x[:, 0, 4], by_x[:, 0, 5], by_x[:, 0, 6] = 1.0, -1.0, -1.0
         by_x[:, 1, :2], by_x[:, 1, 2:4] = near[:, None] * along, -near[:, None] * along
         by_x[:, 1, 4], by_x[:, 1, 5], by_x[:, 1, 6] = near, -far, far
-        return found, by_x
+        return limits, by_x
 
     def moved(self, x: Array, shift: ComplexArray, factor: ComplexArray) -> Array:
         """Dimensions turned and enlarged by factors (D,) about 0, then moved."""
-        found = np.array(x)
+        moved = np.array(x)
         for k in (0, 2):
             place = shift + factor * (x[:, k] + 1j * x[:, k + 1])
-            found[:, k], found[:, k + 1] = place.real, place.imag
-        found[:, 4:] *= np.abs(factor)[:, None]
-        return found
+            moved[:, k], moved[:, k + 1] = place.real, place.imag
+        moved[:, 4:] *= np.abs(factor)[:, None]
+        return moved
 
     def shapes(self, x: Array) -> tuple[Array, ComplexArray]:
         """All dimensions, and the side."""
@@ -239,21 +239,21 @@ class SliderCrankCurves(CouplerCurves):
     def limits(self, x: Array) -> tuple[Array, Array]:
         """a ± h - c, which end the branch, and by x."""
         a, c, h = x[:, 2], x[:, 3], x[:, 4]
-        found = np.stack([a + h - c, a - h - c], axis=1)
-        by_x = np.zeros((*found.shape, 8))
+        limits = np.stack([a + h - c, a - h - c], axis=1)
+        by_x = np.zeros((*limits.shape, 8))
         by_x[:, :, 2], by_x[:, :, 3] = 1.0, -1.0
         by_x[:, 0, 4], by_x[:, 1, 4] = 1.0, -1.0
-        return found, by_x
+        return limits, by_x
 
     def moved(self, x: Array, shift: ComplexArray, factor: ComplexArray) -> Array:
         """Dimensions turned and enlarged by factors (D,) about 0, then moved."""
-        found, size = np.array(x), np.abs(factor)
+        moved, size = np.array(x), np.abs(factor)
         place = shift + factor * (x[:, 0] + 1j * x[:, 1])
-        found[:, 0], found[:, 1] = place.real, place.imag
+        moved[:, 0], moved[:, 1] = place.real, place.imag
         for k in (2, 3, 4, 6, 7):
-            found[:, k] *= size
-        found[:, 5] += np.angle(factor)
-        return found
+            moved[:, k] *= size
+        moved[:, 5] += np.angle(factor)
+        return moved
 
     def shapes(self, x: Array) -> tuple[Array, ComplexArray]:
         """All lengths, the foot of A0 on the line, and the line's direction from it towards B.
@@ -277,7 +277,7 @@ def _dot(v: ComplexArray, w: ComplexArray) -> Array:
 #: The name of the angle that is added to the given inputs.
 INPUT = "input"
 
-_FREE = 1e6  # sizes of the goal: bounds of dimensions without others
+_FREE = 1e6  # sizes of the goal: default bounds of dimensions
 _PLACES = ("A0.x", "A0.y", "B0.x", "B0.y", INPUT, "direction")
 
 
@@ -413,19 +413,19 @@ _SHIFTS = 36  # of the first point along the path
 _GAP = 1e-7  # between inputs of positions in order [rad or length]
 
 
-def own_inputs(path: PathGoal | None, model: Model, table: Array) -> OwnVariables:
+def row_inputs(path: PathGoal | None, model: Model, table: Array) -> RowVariables:
     """Where inputs of points with free timing may be: in the table, unless it is a turn."""
     if path is None or path.timed:
-        return OwnVariables()
+        return RowVariables()
     turns = model.equations.inputs[0].kind == Kind.ANGLE.value
     least, most = float(table.min()), float(table.max())
     if turns and most - least >= FULL_TURN * (1.0 - EQUAL_ROWS):
         least, most = -np.inf, np.inf
     if not path.ordered:
-        return OwnVariables(least=least, most=most)
+        return RowVariables(least=least, most=most)
     gap = min(_GAP, 0.5 * (most - least) / len(path.places))
     span = (FULL_TURN if turns else np.inf) - gap
-    return OwnVariables(least=least, most=most, in_order=True, gap=gap, span=span)
+    return RowVariables(least=least, most=most, in_order=True, gap=gap, span=span)
 
 
 def _freely_timed(

@@ -27,7 +27,7 @@ from linkwork.core.motion.model import Model, model_of
 from linkwork.core.motion.rows_between import between_rows
 from linkwork.core.motion.sweeping import sweep
 from linkwork.core.results.motion import Motion
-from linkwork.synthesis.improvement.curves import own_inputs
+from linkwork.synthesis.improvement.curves import row_inputs
 from linkwork.synthesis.improvement.goals import Misses, NumberMisses, PathGoal, goal_of
 from linkwork.synthesis.improvement.kept_relations import Together
 from linkwork.synthesis.improvement.lanes import DesignWriter, SolvedLanes, inputs_away
@@ -60,32 +60,32 @@ class Objectives:
     weights: Array
     bounds: tuple[slice, ...]
 
-    def misses(self, found: Residuals, k: int) -> tuple[Array, Array]:
+    def misses(self, result: Residuals, k: int) -> tuple[Array, Array]:
         """The misses of an objective, (D, n), and by the numbers, (D, n, P)."""
-        own = self.columns[k]
-        if own is not None:
-            return found.shared[:, own], found.shared_by_x[:, own]
-        count = len(found.rows)
-        return found.rows.reshape(count, -1), found.by_x.reshape(count, -1, found.by_x.shape[-1])
+        columns = self.columns[k]
+        if columns is not None:
+            return result.shared[:, columns], result.shared_by_x[:, columns]
+        count = len(result.rows)
+        return result.rows.reshape(count, -1), result.by_x.reshape(count, -1, result.by_x.shape[-1])
 
-    def count(self, found: Residuals, k: int) -> int:
+    def count(self, residuals: Residuals, k: int) -> int:
         """The number of misses of an objective; a distance from a point is one."""
-        own = self.columns[k]
-        return int(found.rows.shape[1] if own is None else own.stop - own.start)
+        columns = self.columns[k]
+        return int(residuals.rows.shape[1] if columns is None else columns.stop - columns.start)
 
-    def values(self, found: Residuals) -> Array:
+    def values(self, residuals: Residuals) -> Array:
         """The objectives, (D, K), without the weights of their goals."""
         values = [
-            np.linalg.norm(self.misses(found, k)[0], axis=1) / np.sqrt(self.count(found, k))
+            np.linalg.norm(self.misses(residuals, k)[0], axis=1) / np.sqrt(self.count(residuals, k))
             for k in range(len(self.names))
         ]
         # there may be bounds only
-        return np.array(values).reshape(len(values), len(found.shared)).T / self.weights
+        return np.array(values).reshape(len(values), len(residuals.shared)).T / self.weights
 
-    def broken(self, found: Residuals) -> Array:
+    def broken(self, result: Residuals) -> Array:
         """The largest residual of a bound, (D,)."""
-        every = [np.abs(found.shared[:, own]).max(axis=1, initial=0.0) for own in self.bounds]
-        return np.asarray(np.max([np.zeros(len(found.shared)), *every], axis=0))
+        every = [np.abs(result.shared[:, part]).max(axis=1, initial=0.0) for part in self.bounds]
+        return np.asarray(np.max([np.zeros(len(result.shared)), *every], axis=0))
 
 
 class TradeOff:
@@ -117,26 +117,26 @@ class TradeOff:
         """Whether an objective of a lane is limited."""
         return bool(np.isfinite(self.limits).any())
 
-    def applied(self, found: Residuals, lanes: IndexArray) -> Residuals:
+    def applied(self, residuals: Residuals, lanes: IndexArray) -> Residuals:
         """Weighted residuals of lanes, and those of broken limits after them."""
-        rows, by_x, by_t = found.rows, found.by_x, found.by_t
-        shared, shared_by_x = np.array(found.shared), np.array(found.shared_by_x)
+        rows, by_x, by_t = residuals.rows, residuals.by_x, residuals.by_t
+        shared, shared_by_x = np.array(residuals.shared), np.array(residuals.shared_by_x)
         values, slopes = [], []
-        for k, own in enumerate(self.objectives.columns):
-            unit = self.scale[k] * np.sqrt(self.objectives.count(found, k))
-            misses, slope = self.objectives.misses(found, k)
+        for k, columns in enumerate(self.objectives.columns):
+            unit = self.scale[k] * np.sqrt(self.objectives.count(residuals, k))
+            misses, slope = self.objectives.misses(residuals, k)
             value = np.linalg.norm(misses / unit, axis=1)
             along = misses / unit / np.where(value > 0.0, value, 1.0)[:, None]
             values.append(value)
             slopes.append(np.einsum("dn,dnp->dp", along, slope / unit))
             # eq. (169)
             factor = self.weights[lanes, k] / unit
-            if own is None:
+            if columns is None:
                 rows, by_x = rows * factor[:, None, None], by_x * factor[:, None, None, None]
                 by_t = None if by_t is None else by_t * factor[:, None, None]
             else:
-                shared[:, own] *= factor[:, None]
-                shared_by_x[:, own] *= factor[:, None, None]
+                shared[:, columns] *= factor[:, None]
+                shared_by_x[:, columns] *= factor[:, None, None]
         # eq. (155)
         h = np.stack(values, axis=1) - self.limits[lanes] + _MARGIN
         over, rise = self.limited.residuals(lanes, h, np.stack(slopes, axis=1))
@@ -150,8 +150,8 @@ class TradeOff:
         )
 
 
-def told_apart(names: Sequence[str]) -> tuple[str, ...]:
-    """Names of which equal ones are numbered."""
+def numbered_names(names: Sequence[str]) -> tuple[str, ...]:
+    """Names, with a number behind those that occur again."""
     return tuple(
         name if name not in names[:k] else f"{name} ({1 + list(names[:k]).count(name)})"
         for k, name in enumerate(names)
@@ -235,7 +235,7 @@ class Fitting:
     together: Together | None = None
 
     def all_numbers(self, x: Array) -> Array:
-        """The numbers (D, P) of what is fitted, (D, G)."""
+        """The numbers (D, P) at the parameters of the fit, (D, G)."""
         return x if self.together is None else self.together.numbers(x)
 
 
@@ -244,7 +244,7 @@ class FitProblem(LaneProblem):
 
     Parameters
     ----------
-    given : Fitting
+    fitting : Fitting
     lanes : int
 
     Attributes
@@ -255,32 +255,32 @@ class FitProblem(LaneProblem):
         How much numbers change each goal, and how far it is missed, as far as is known; else NaN.
     """
 
-    def __init__(self, given: Fitting, lanes: int) -> None:
-        self.given, model, motion, path = given, given.model, given.motion, given.path
+    def __init__(self, fitting: Fitting, lanes: int) -> None:
+        self.fitting, model, motion, path = fitting, fitting.model, fitting.motion, fitting.path
         self.model, self.motion, self.path = model, motion, path
-        self.numbers = np.array([float(q.of(model.description)) for q in given.numbers])
-        self.x = self.numbers if given.together is None else given.together.sizes
+        self.numbers = np.array([float(q.of(model.description)) for q in fitting.numbers])
+        self.x = self.numbers if fitting.together is None else fitting.together.sizes
         lead = next(iter(motion.inputs))
         scale = float(model.input_scale[0])
         # limits between the rows of the table move with the numbers
         table = (np.asarray(motion.inputs[lead]) * scale)[motion.asked]
         there = np.asarray(motion.found[motion.asked])
-        self.writer = DesignWriter(model, given.numbers)
-        self.goals = [goal_of(model, goal, table, there, scale) for goal in given.goals]
+        self.writer = DesignWriter(model, fitting.numbers)
+        self.goals = [goal_of(model, goal, table, there, scale) for goal in fitting.goals]
         # of the shared residuals, those that are no bounds
         counted = [np.full(misses.count, not misses.is_bound) for misses in self.goals]
         # goals of the same rows share their positions
         tables = {misses.at.tobytes(): misses.at for misses in self.goals}
         paths = [] if path is None else [path.inputs]
         super().__init__(
-            given.box,
-            own_inputs(path, model, table),
+            fitting.box,
+            row_inputs(path, model, table),
             lanes,
             sum(map(len, [*paths, *tables.values()])),
             np.concatenate([np.zeros(0, bool), *counted]),
         )
-        self.points = None if path is None else self._rows(path.inputs)
-        self.rows = {key: self._rows(at) for key, at in tables.items()}
+        self.points = None if path is None else self._solved_lanes(path.inputs)
+        self.rows = {key: self._solved_lanes(at) for key, at in tables.items()}
         self._there = there
         #: How much the numbers of a fit are above the exact ones, for each goal (K, lanes).
         self.errors = np.zeros((len(self.goals), lanes))
@@ -299,7 +299,7 @@ class FitProblem(LaneProblem):
     def multipliers(self) -> list[Multipliers]:
         """Those of goals that are bounds, and of limits of objectives."""
         limits = [self.trade.limited] if self.trade is not None and self.trade.has_limits else []
-        return [*limits, *(own for own in self.bounds if own is not None)]
+        return [*limits, *(bound for bound in self.bounds if bound is not None)]
 
     @cached_property
     def objectives(self) -> Objectives:
@@ -308,16 +308,16 @@ class FitProblem(LaneProblem):
         columns: list[slice | None] = [] if self.path is None else [None]
         weights, bounds, first = [1.0] * len(names), [], 0
         for misses in self.goals:
-            own = slice(first, first + misses.count)
-            first = own.stop
+            part = slice(first, first + misses.count)
+            first = part.stop
             if misses.is_bound:
-                bounds.append(own)
+                bounds.append(part)
                 continue
             names.append(misses.goal.of)
-            columns.append(own)
+            columns.append(part)
             weights.append(misses.goal.weight)
         return Objectives(
-            names=told_apart(names),
+            names=numbered_names(names),
             columns=tuple(columns),
             weights=np.array(weights),
             bounds=tuple(bounds),
@@ -331,7 +331,7 @@ class FitProblem(LaneProblem):
         return [pair for pair in pairs if not isinstance(pair[0].goal, Aid)]
 
     def copy_lanes(self, fit: LaneFit, of: IndexArray, to: IndexArray) -> None:
-        """Begin lanes where others are now."""
+        """Start lanes at the present state of other lanes."""
         for name in ("x", "t", "total"):
             getattr(fit, name)[to] = getattr(fit, name)[of]
         for solved in self._solvers:
@@ -339,7 +339,7 @@ class FitProblem(LaneProblem):
         self.errors[:, to] = self.errors[:, of]
         self._reached[to] = True
 
-    def _rows(self, at: Array) -> SolvedLanes:
+    def _solved_lanes(self, at: Array) -> SolvedLanes:
         """Lanes at inputs, begun between or at the nearest rows of the mechanism's motion."""
         away = inputs_away(at, self.motion, self.model)
         q = self.motion.q[away.argmin(axis=1)]
@@ -355,16 +355,16 @@ class FitProblem(LaneProblem):
 
     def begun(self, starts: Array) -> LaneFit:
         """The starts, which are reached from the mechanism when their lanes are first worked on."""
-        own = 0 if self.path is None or self.path.timed else len(self.path.places)
-        inputs = self.path.inputs[:own] if self.path else np.zeros(0)
-        return starts_of(starts, np.array(np.broadcast_to(inputs, (len(starts), own))))
+        free_inputs = 0 if self.path is None or self.path.timed else len(self.path.places)
+        inputs = self.path.inputs[:free_inputs] if self.path else np.zeros(0)
+        return starts_of(starts, np.array(np.broadcast_to(inputs, (len(starts), free_inputs))))
 
     def reached(self, fit: LaneFit, lanes: IndexArray) -> LaneFit:
         """Starts reached from the mechanism, with their sums; infinite where lost."""
         every = fit.take(np.arange(len(fit)))
 
-        def work(own: IndexArray, count: Callable[[], None]) -> None:
-            every.total[own] = self._reach(fit.take(own), own, count)
+        def work(part: IndexArray, count: Callable[[], None]) -> None:
+            every.total[part] = self._reach(fit.take(part), part, count)
 
         self.work.share(lanes, APPROACH, work)
         return replace(every, interrupted=self.work.stopped)
@@ -389,7 +389,7 @@ class FitProblem(LaneProblem):
         lanes: IndexArray,
         count: Callable[[], None] = lambda: None,
     ) -> Array:
-        """From numbers to others in some steps, so that positions follow; the sums there."""
+        """Go from numbers to others in steps, so that positions follow; the sums there."""
         total = np.zeros(0)
         for part in range(1, APPROACH + 1):
             count()
@@ -411,7 +411,7 @@ class FitProblem(LaneProblem):
         self, x: Array, t: Array, lanes: IndexArray, power: int | None = None
     ) -> Residuals:
         """All misses of designs (D, P); NaN for those of other equations."""
-        x = self.given.all_numbers(x)
+        x = self.fitting.all_numbers(x)
         count, parameters = x.shape
         rows, by_x = np.zeros((count, 0, 2)), np.zeros((count, 0, 2, parameters))
         by_t: Array | None = None
@@ -420,10 +420,10 @@ class FitProblem(LaneProblem):
         if self.path is not None and self.points is not None:
             at = np.broadcast_to(self.path.inputs, (count, len(self.path.places)))
             at = at if self.path.timed else t
-            found = self.points.at(designs, at, lanes)
-            rows, by_x, slope = self.path.misses(found)
+            positions_of_lanes = self.points.at(designs, at, lanes)
+            rows, by_x, slope = self.path.misses(positions_of_lanes)
             by_t = None if self.path.timed else slope
-            kept.append((self.points, found, at))
+            kept.append((self.points, positions_of_lanes, at))
         positions = {}
         for key, solved in self.rows.items():
             at = np.broadcast_to(solved.rows_at, (count, len(solved.rows_at)))
@@ -431,22 +431,22 @@ class FitProblem(LaneProblem):
             kept.append((solved, positions[key], at))
         shared, shared_by_x = [np.zeros((count, 0))], [np.zeros((count, 0, parameters))]
         for k, misses in enumerate(self.goals):
-            given = positions[misses.at.tobytes()], self.errors[k, lanes], self.bounds[k], lanes
-            own, slopes = misses.of(*given)
-            if not self.moved[k] > 0.0 and (there := np.isfinite(own)).any():
+            arguments = positions[misses.at.tobytes()], self.errors[k, lanes], self.bounds[k], lanes
+            missed, slopes = misses.of(*arguments)
+            if not self.moved[k] > 0.0 and (there := np.isfinite(missed)).any():
                 self.moved[k] = float(np.abs(slopes[there]).max())
-                self.missed[k] = float(np.abs(own[there]).max())
-            shared.append(own)
+                self.missed[k] = float(np.abs(missed[there]).max())
+            shared.append(missed)
             shared_by_x.append(slopes)
         slopes = np.concatenate(shared_by_x, axis=1)
-        if self.given.together is not None:
-            by_x, slopes = (own @ self.given.together.slopes for own in (by_x, slopes))
+        if self.fitting.together is not None:
+            by_x, slopes = (slope @ self.fitting.together.slopes for slope in (by_x, slopes))
         result = Residuals(rows, by_x, by_t, np.concatenate(shared, axis=1), slopes)
         if self.trade is not None:
             result = self.trade.applied(result, lanes)
         result = self.raised(result, lanes, power)
-        for solver, found, at in kept:
-            solver.keep(found, x, at, lanes, result.total)
+        for solver, positions_of_lanes, at in kept:
+            solver.keep(positions_of_lanes, x, at, lanes, result.total)
         return result
 
     def correct(self, fit: LaneFit, lanes: IndexArray) -> IndexArray:
@@ -455,17 +455,17 @@ class FitProblem(LaneProblem):
         Errors are measured on the motions of designs: a deferred correction. A design without all
         rows of the mechanism keeps its error.
         """
-        goals = {k: own for k, own in enumerate(self.goals) if isinstance(own, NumberMisses)}
+        goals = {k: miss for k, miss in enumerate(self.goals) if isinstance(miss, NumberMisses)}
         changed: list[int] = []
         known = lanes[np.isfinite(fit.total[lanes])] if goals else lanes[:0]
         for part in self.work.parts(known) if len(known) else ():
-            x = self.given.all_numbers(fit.x[part])
+            x = self.fitting.all_numbers(fit.x[part])
             designs = self.writer.written(x)
             values = []
             for goal in goals.values():
                 at = np.broadcast_to(goal.at, (len(part), len(goal.at)))
-                found = self.rows[goal.at.tobytes()].at(designs, at, part)
-                values.append(goal.values(found)[0][:, 0])
+                solved = self.rows[goal.at.tobytes()].at(designs, at, part)
+                values.append(goal.values(solved)[0][:, 0])
             for d, lane in enumerate(part.tolist()):
                 motion = self._motion(x[d])
                 if motion is None:
@@ -481,7 +481,7 @@ class FitProblem(LaneProblem):
 
     def _motion(self, x: Array) -> Motion | None:
         """The motion of a design, if it has all rows that the mechanism has."""
-        new = dict(zip(self.given.numbers, x.tolist(), strict=True))
+        new = dict(zip(self.fitting.numbers, x.tolist(), strict=True))
         try:
             model = model_of(with_numbers(self.model.description, new))
             motion = sweep(model, certify=False)
@@ -496,14 +496,14 @@ class FitProblem(LaneProblem):
         for solved in self._solvers:
             solved.total[lanes] = np.inf
         parts = self.work.parts(lanes)
-        found: dict[int, Residuals] = {}
+        measured: dict[int, Residuals] = {}
 
         def measure(k: int) -> None:
-            found[k] = self.evaluate(fit.x[parts[k]], fit.t[parts[k]], parts[k])
+            measured[k] = self.evaluate(fit.x[parts[k]], fit.t[parts[k]], parts[k])
 
         share_out(measure, range(len(parts)), cores())
         self.power, self.trade, self.bounds = kept
-        return Residuals.joined([found[k] for k in range(len(parts))])
+        return Residuals.joined([measured[k] for k in range(len(parts))])
 
     def result(self, fit: LaneFit, most: int | None = None) -> FittedNumbers:
         """All lanes that are known, or the best ones, with their misses."""
@@ -511,14 +511,14 @@ class FitProblem(LaneProblem):
         known = np.sort(known[:most])
         self.correct(fit, known)
         there = self.measured(fit, known)
-        beyond = [misses.beyond(there.shared[:, own]) for misses, own in self._kept]
+        beyond = [misses.beyond(there.shared[:, columns]) for misses, columns in self._kept]
         fit = fit.take(known)
         timed = self.path is None or self.path.timed
         t = fit.t
         if timed and self.path is not None:
             t = np.array(np.broadcast_to(self.path.inputs, (len(fit), len(self.path.places))))
         return FittedNumbers(
-            x=self.given.all_numbers(fit.x),
+            x=self.fitting.all_numbers(fit.x),
             t=t,
             total=np.where(np.isfinite(fit.total), there.total, np.inf),
             largest=largest_misses(there, self.counted),
@@ -550,21 +550,21 @@ def check_moved(problem: FitProblem) -> None:
     """
     unmoved = _unmoved(problem)
     if unmoved:
-        probe, width = FitProblem(problem.given, _PROBES), problem.box.most - problem.box.least
+        probe, width = FitProblem(problem.fitting, _PROBES), problem.box.most - problem.box.least
         draws = np.random.default_rng(0).uniform(-1.0, 1.0, (_PROBES, len(problem.x)))
         x = problem.box.inside(problem.x + _PROBED * width * draws)
         probe.reached(probe.begun(x), np.arange(_PROBES))
         unmoved &= _unmoved(probe)
-    told = "changes with no number that varies, at any start: vary numbers that it depends on, or"
-    found = [
+    reason = "changes with no number that varies, at any start: vary numbers that it depends on, or"
+    problems = [
         Problem(
             key=("goals", k, "of"),
-            message=f'"{problem.goals[k].goal.of}" {told} leave this goal out',
+            message=f'"{problem.goals[k].goal.of}" {reason} leave this goal out',
         )
         for k in sorted(unmoved)
     ]
-    if found:
-        raise MechanismError(found, "the improvement")
+    if problems:
+        raise MechanismError(problems, "the improvement")
 
 
 def _unmoved(problem: FitProblem) -> set[int]:
@@ -585,7 +585,7 @@ _ALL = 64  # so few lanes all go on, and are left of an interrupted fit
 
 
 def fit_numbers(
-    given: Fitting,
+    fitting: Fitting,
     starts: Array,
     *,
     minimax: bool = False,
@@ -600,7 +600,7 @@ def fit_numbers(
     UnknownNameError, InputError
         For goals that are not known, or whose derivatives are not known.
     """
-    problem = FitProblem(given, len(starts))
+    problem = FitProblem(fitting, len(starts))
     rounds = [(1, steps) for steps in (_BOUND_STEPS if problem.multipliers else _STEPS)]
     rounds += [(power, _POWER_STEPS) for power in (POWERS if minimax else ())]
     problem.work.tell, problem.work.whole = progress, sum(steps for _, steps in rounds)
@@ -640,15 +640,15 @@ def path_misses(
     away = inputs_away(path.inputs, motion, model)
     writer = DesignWriter(model, numbers)
     solved = SolvedLanes(writer, x, motion.q[away.argmin(axis=1)], path.inputs, 1)
-    found = solved.at(writer.written(x[None]), path.inputs[None], np.zeros(1, dtype=int))
-    place = found.rows.place(path.point).v
-    value = found.values([place.real, place.imag])[0][0]
+    positions = solved.at(writer.written(x[None]), path.inputs[None], np.zeros(1, dtype=int))
+    place = positions.rows.place(path.point).v
+    value = positions.values([place.real, place.imag])[0][0]
     return np.asarray(np.abs(value[:, 0] + 1j * value[:, 1] - path.places))
 
 
-def misses_before(given: Fitting, *, minimax: bool) -> float:
+def misses_before(fitting: Fitting, *, minimax: bool) -> float:
     """What a fit makes small, of the mechanism as it is; infinite if it breaks a bound."""
-    problem = FitProblem(given, 1)
+    problem = FitProblem(fitting, 1)
     now = problem.result(problem.reached(problem.begun(problem.x[None]), np.arange(1)))
     kept = now.broken[0] == 0.0 and not now.beyond.any()
     return float((now.largest if minimax else now.total)[0]) if kept else np.inf

@@ -33,14 +33,14 @@ from linkwork.synthesis.improvement.proved_design import (
 from linkwork.synthesis.improvement.settings import Goal
 from linkwork.synthesis.lane_least_squares import Box, starts_of
 
-_ALIKE = 1e-6  # of the span of an objective: what fits agree to
+_ALIKE = 1e-6  # of the span of an objective: repeated fits agree to this
 
 
 def objective_spans(values: Array, every: Array | None = None) -> Array:
     """The ranges of objectives over designs (D, K), (K,).
 
-    The largest value instead, of ``every`` design if given, where they differ by a millionth of it
-    at most.
+    If values differ by a millionth of the largest at most, the largest (of ``every`` design if
+    passed) is used instead.
     """
     spans = np.ptp(values, axis=0) if len(values) else np.zeros(values.shape[1])
     largest = np.abs(values if every is None else every).max(axis=0, initial=0.0)
@@ -49,7 +49,7 @@ def objective_spans(values: Array, every: Array | None = None) -> Array:
 
 
 def alike(values: Array, k: int, spans: Array) -> IndexArray:
-    """The designs whose objectives (D, K) are those of one, to what fits agree to."""
+    """The designs whose objectives (D, K) equal those of one, to the accuracy of fits."""
     return np.flatnonzero((np.abs(values - values[k]) <= _ALIKE * spans).all(axis=1))
 
 
@@ -65,16 +65,16 @@ def undominated(values: Array) -> IndexArray:
         Objectives; smaller is better. Designs without all of them are left out.
     """
     known = np.flatnonzero(np.isfinite(values).all(axis=1))
-    own = values[known]
-    if not len(own):
+    rows = values[known]
+    if not len(rows):
         return known
-    scaled = (own - own.min(axis=0)) / objective_spans(own[_strictly(own)], own)
+    scaled = (rows - rows.min(axis=0)) / objective_spans(rows[_strictly(rows)], rows)
     kept: list[int] = []
     for k in np.argsort(scaled.sum(axis=1), kind="stable"):
         no_larger = scaled[kept] <= scaled[k] + _ALIKE
         if not no_larger.all(axis=1).any():
             kept.append(int(k))
-    order = np.lexsort(own[kept].T[::-1])
+    order = np.lexsort(rows[kept].T[::-1])
     return np.asarray(known[np.array(kept)[order]])
 
 
@@ -119,7 +119,7 @@ def spread(values: Array, count: int) -> IndexArray:
 # and Multidisciplinary Optimization 29 (2005) 149-158, doi:10.1007/s00158-004-0465-1.
 
 
-_OTHERS = (0.1, 0.01, 1e-3, 1e-4)  # weights of the others, which decide between equal designs
+_OTHERS = (0.1, 0.01, 1e-3, 1e-4)  # weights that decide between equal designs
 _STEPS = 40  # of each round
 _ROUNDS = (40, 20, 20, 20, 20)  # steps; after each the shifts of limits and bounds change
 _BEST = 2  # minima of each objective at which weighted sums begin
@@ -130,14 +130,14 @@ BROKEN = 1e-5
 
 
 def fit_front(
-    given: Fitting,
+    fitting: Fitting,
     starts: Array,
     count: int,
     *,
     progress: Callable[[float], None] | None = None,
 ) -> FittedNumbers:
     """All designs on the way to a front of ``count`` designs, from starts (D, P)."""
-    front = _Front(given, starts, count, progress)
+    front = _Front(fitting, starts, count, progress)
     try:
         for stage in (front.minimise_each, front.weigh, front.limit):
             stage()
@@ -154,12 +154,12 @@ class _Front:
 
     def __init__(
         self,
-        given: Fitting,
+        fitting: Fitting,
         starts: Array,
         count: int,
         progress: Callable[[float], None] | None,
     ) -> None:
-        probe = FitProblem(given, 1)
+        probe = FitProblem(fitting, 1)
         self.size, self.count = len(probe.objectives.names), count
         self.weights = _weights(self.size, count)
         self.limits = _levels(self.size, count)
@@ -167,7 +167,7 @@ class _Front:
         weighted = len(self.weights) * self.size * _BEST
         between = 2 * count * _FILLINGS if self.size == 2 else len(self.limits)
         self.used, lanes = 0, alone + weighted + between
-        self.problem = FitProblem(given, lanes)
+        self.problem = FitProblem(fitting, lanes)
         self.problem.work.tell = progress
         fillings = _FILLINGS if self.size == 2 else 1
         self.problem.work.whole = APPROACH + len(_OTHERS) * _STEPS + (2 + fillings) * sum(_ROUNDS)
@@ -190,24 +190,24 @@ class _Front:
 
     def _values(self, lanes: IndexArray) -> Array:
         """Objectives of lanes (D, K), infinite where they are not known or a bound is broken."""
-        found = self.problem.measured(self.fit, lanes)
-        values = self.problem.objectives.values(found)
-        fine = np.isfinite(values).all(axis=1) & (self.problem.objectives.broken(found) <= BROKEN)
+        result = self.problem.measured(self.fit, lanes)
+        values = self.problem.objectives.values(result)
+        fine = np.isfinite(values).all(axis=1) & (self.problem.objectives.broken(result) <= BROKEN)
         return np.where(fine[:, None], values, np.inf)
 
     def _run(self, lanes: IndexArray, rounds: Sequence[int]) -> None:
         self.problem.trade = self.trade
         for k, steps in enumerate(rounds):
-            own = lanes[np.isfinite(self.fit.total[lanes]) | (k == 0)]
-            if not len(own) or self.fit.interrupted:
+            running = lanes[np.isfinite(self.fit.total[lanes]) | (k == 0)]
+            if not len(running) or self.fit.interrupted:
                 break
             if k == len(rounds) - 1:
-                self.problem.correct(self.fit, own)
-            self.fit = self.problem.further(self.fit, own, steps)
+                self.problem.correct(self.fit, running)
+            self.fit = self.problem.further(self.fit, running, steps)
         self.used = max(self.used, int(lanes.max(initial=-1)) + 1)
 
     def _begin(self, parents: Sequence[int]) -> IndexArray:
-        """New lanes that begin where others are."""
+        """New lanes that start at the state of other lanes."""
         of = np.array(parents, dtype=np.intp)
         to = self.used + np.arange(len(of))
         self.fit = replace(
@@ -217,11 +217,11 @@ class _Front:
         return to
 
     def minimise_each(self) -> None:
-        """Each objective alone, the others deciding between equal designs."""
-        own = np.repeat(np.arange(self.size), len(self.alone) // self.size)
+        """Minimise each objective alone; the others decide between equal designs."""
+        goal = np.repeat(np.arange(self.size), len(self.alone) // self.size)
         for other in _OTHERS:
             self.trade.weights[self.alone] = other
-            self.trade.weights[self.alone, own] = 1.0
+            self.trade.weights[self.alone, goal] = 1.0
             self._run(self.alone, (_STEPS,))
         if self.problem.multipliers:
             self._run(self.alone, _ROUNDS)
@@ -245,7 +245,7 @@ class _Front:
         self._run(lanes, _ROUNDS if self.problem.multipliers else (2 * _STEPS,))
 
     def limit(self) -> None:
-        """One objective with limits of the others."""
+        """Minimise one objective with limits on the others."""
         if self.size > 2:
             self._level()
             return
@@ -263,7 +263,7 @@ class _Front:
         spans = objective_spans(places)
         scaled = (places - places.min(axis=0)) / spans
         gaps = np.linalg.norm(np.diff(scaled, axis=0), axis=1)
-        found: list[tuple[int, int, int, float, float]] = []
+        fillings: list[tuple[int, int, int, float, float]] = []
         for k, part in enumerate(_divided(gaps, self.count, self.count - len(front))):
             held = int(np.abs(scaled[k + 1] - scaled[k]).argmax())
             low, high = places[k, held], places[k + 1, held]
@@ -271,19 +271,19 @@ class _Front:
                 limit = float(low + share * (high - low))
                 if (held, limit) not in self._tried:
                     self._tried.add((held, limit))
-                    found.append((int(front[k]), int(front[k + 1]), held, float(share), limit))
-        found = found[: (len(self.fit) - self.used) // 2]
-        if not found:
+                    fillings.append((int(front[k]), int(front[k + 1]), held, float(share), limit))
+        fillings = fillings[: (len(self.fit) - self.used) // 2]
+        if not fillings:
             return False
         one, other, held_ones, shares, limits = (
-            np.array(part) for part in zip(*found, strict=True)
+            np.array(part) for part in zip(*fillings, strict=True)
         )
         nearer = np.where(shares < 0.5, one, other)
         lanes = self._begin([*nearer, *nearer])
         # from the nearer neighbour, and from a design between both
         between = self.fit.x[one] + shares[:, None] * (self.fit.x[other] - self.fit.x[one])
         self.problem.trade = None
-        self.problem.move(self.fit, lanes[len(found) :], between)
+        self.problem.move(self.fit, lanes[len(fillings) :], between)
         held_ones = np.tile(held_ones, 2)
         self._set_free(lanes, places, spans)
         self.trade.weights[lanes, held_ones] *= _OTHERS[-1]
@@ -340,9 +340,9 @@ def _weights(size: int, count: int) -> Array:
     """Weights spread over the objectives, (W, K); the sum of their squares is 1."""
     parts = size
     while True:
-        found = [np.diff([0, *ends, parts]) for ends in combinations(range(1, parts), size - 1)]
-        if 2 * len(found) >= count:
-            return np.sqrt(np.array(found) / parts)
+        shares = [np.diff([0, *ends, parts]) for ends in combinations(range(1, parts), size - 1)]
+        if 2 * len(shares) >= count:
+            return np.sqrt(np.array(shares) / parts)
         parts += 1
 
 
@@ -354,12 +354,12 @@ def _levels(size: int, count: int) -> list[tuple[int, Array]]:
     while steps ** (size - 1) < count:
         steps += 1
     shares = np.arange(1, steps + 1) / (steps + 1)
-    found = [
+    between = [
         (free, np.array(levels))
         for free in range(size)
         for levels in product(*(([0.0] if k == free else shares) for k in range(size)))
     ]
-    return found[:: -(-len(found) // (_FILLINGS * count))]
+    return between[:: -(-len(between) // (_FILLINGS * count))]
 
 
 def _divided(gaps: Array, count: int, missing: int) -> list[int]:
@@ -407,9 +407,9 @@ def front_designs(
     count : int
         The largest number of designs of the front.
     is_sound : callable
-        Whether a proved design keeps every wish.
+        Whether a proved design meets every requirement.
     tell : callable
-        Told before each proof which fraction of the proofs is done.
+        Called before each proof with the finished fraction of the proofs.
 
     Raises
     ------
@@ -417,14 +417,11 @@ def front_designs(
         If no design was proved before it.
     """
     lanes = [
-        (path, found, k)
-        for path, found in fits
-        for k in range(len(found.x))
-        if np.isfinite(found.total[k])
+        (path, fit, k) for path, fit in fits for k in range(len(fit.x)) if np.isfinite(fit.total[k])
     ]
-    values = np.array([found.objectives[k] for _, found, k in lanes])
+    values = np.array([fit.objectives[k] for _, fit, k in lanes])
     values = values.reshape(len(lanes), len(fits[0][1].names))
-    broken = np.array([found.broken[k] for _, found, k in lanes])
+    broken = np.array([fit.broken[k] for _, fit, k in lanes])
     kept = broken <= BROKEN
     if len(lanes) and not kept.any():
         # the design that comes nearest to the bounds is shown, and refused
@@ -432,7 +429,7 @@ def front_designs(
     values = np.where(kept[:, None], values, np.inf)
     proved: dict[int, ImprovedDesign] = {}
     refused: dict[int, ImprovedDesign] = {}
-    told, stopped = 0.0, False
+    share, stopped = 0.0, False
     while True:
         front = undominated(values)
         chosen = [int(k) for k in front[spread(values[front], count)]]
@@ -443,11 +440,11 @@ def front_designs(
         every = len(proved) + len(new)
         try:
             for k in new:
-                told = max(told, len(proved) / every)
-                tell(told)
-                path, found, lane = lanes[k]
-                design = fitted_design(model, numbers, path, found, lane)
-                design = _measured(design, numbers, box, path, goals, found.t[lane])
+                share = max(share, len(proved) / every)
+                tell(share)
+                path, fit, lane = lanes[k]
+                design = fitted_design(model, numbers, path, fit, lane)
+                design = _measured(design, numbers, box, path, goals, fit.t[lane])
                 if is_sound(design):
                     # equal designs would take its place by rounding
                     values[alike(values, k, spans)] = np.inf
@@ -477,7 +474,7 @@ def _measured(
     if design.motion is None or not design.motion.found.any():
         return design
     at = None if path is None else replace(path, inputs=t, timed=True)
-    own = FitProblem(
+    problem = FitProblem(
         Fitting(
             model=model_of(design.description),
             motion=design.motion,
@@ -489,10 +486,10 @@ def _measured(
         1,
     )
     x = np.array(list(design.numbers.values()))[None]
-    misses = own.measured(starts_of(x, np.zeros((1, 0))), np.zeros(1, dtype=int))
-    values = own.objectives.values(misses)[0]
+    misses = problem.measured(starts_of(x, np.zeros((1, 0))), np.zeros(1, dtype=int))
+    values = problem.objectives.values(misses)[0]
     design = replace(design, goals=dict(zip(design.goals, map(float, values), strict=True)))
     if np.isfinite(values).all():
         return design
-    told = f"{design.message}; a goal has no value on the branch of its table"
-    return replace(design, sound=False, message=told)
+    message = f"{design.message}; a goal has no value on the branch of its table"
+    return replace(design, sound=False, message=message)

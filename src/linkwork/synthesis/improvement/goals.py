@@ -67,13 +67,13 @@ class BetweenRows:
         near = value[:, self._window]
         sign = np.where(greatest, -1.0, 1.0)
         with np.errstate(all="ignore"):
-            t = self._places(sign[:, :, None] * (near @ _QUARTIC.T))
+            t = self._minima(sign[:, :, None] * (near @ _QUARTIC.T))
             weights = t[:, :, None] ** np.arange(5) @ _QUARTIC
-            found = (weights * near).sum(axis=2) - sign * self._missed(value, t)
+            extremes = (weights * near).sum(axis=2) - sign * self._missed(value, t)
         slopes = np.einsum("drk,drkp->drp", weights, by_x[:, self._window])
-        return found, slopes
+        return extremes, slopes
 
-    def _places(self, c: Array) -> Array:
+    def _minima(self, c: Array) -> Array:
         """Where quartics with coefficients (D, R, 5) are least, in steps from their middle row."""
         ends = [np.broadcast_to(end, c.shape[:2]) for end in (self._low, self._high)]
         t = np.clip(-0.5 * c[:, :, 1] / c[:, :, 2], *ends)
@@ -154,18 +154,18 @@ class PathGoal:
         """The miss of a point at which the mechanism does not close [length]."""
         return 4.0 * float(np.abs(self.places - self.places.mean()).max())
 
-    def misses(self, found: LanePositions) -> tuple[Array, Array, Array]:
+    def misses(self, positions: LanePositions) -> tuple[Array, Array, Array]:
         """Vectors from the points (D, N, 2), by the numbers and by the inputs.
 
         A row that does not close yet counts as a large miss, and waits; a design of other equations
         has no misses.
         """
-        place = found.rows.place(self.point).v
-        rows, by_x, by_t = found.values([place.real, place.imag])
+        place = positions.rows.place(self.point).v
+        rows, by_x, by_t = positions.values([place.real, place.imag])
         rows = rows - np.stack([self.places.real, self.places.imag], axis=1)
-        lost = ~found.found.reshape(found.shape)
+        lost = ~positions.solved.reshape(positions.shape)
         rows[lost], by_x[lost], by_t[lost] = self.lost, 0.0, 0.0
-        rows[~found.rows.designs.fine] = np.nan
+        rows[~positions.rows.designs.fine] = np.nan
         return rows, by_x, by_t
 
 
@@ -185,7 +185,7 @@ class Misses(ABC):
         self.goal, self.at, self.order = goal, at, order
 
     @abstractmethod
-    def values(self, found: LanePositions) -> tuple[Array, Array]:
+    def values(self, positions: LanePositions) -> tuple[Array, Array]:
         """The quantity (D, K) in file units, and by the numbers, (D, K, P)."""
 
     #: A full turn, of a quantity that is an angle [file units]; else 0.
@@ -212,17 +212,17 @@ class Misses(ABC):
 
     @np.errstate(all="ignore")  # where there is no position there is no number
     def of(
-        self, found: LanePositions, error: Array, bound: Multipliers | None, lanes: IndexArray
+        self, positions: LanePositions, error: Array, bound: Multipliers | None, lanes: IndexArray
     ) -> tuple[Array, Array]:
         """Weighted misses (D, K) of values less their error (D,), and by the numbers.
 
         ``bound``: the multipliers (lanes, 2, K) of a goal that is one.
         """
-        (value, by_x), goal = self.values(found), self.goal
+        (value, by_x), goal = self.values(positions), self.goal
         value = value - error[:, None]
         if bound is None:
-            wanted: Any = np.array(goal.values) if goal.values else goal.target
-            away = value - wanted
+            target: Any = np.array(goal.values) if goal.values else goal.target
+            away = value - target
             if self.turn:
                 away = np.mod(away + 0.5 * self.turn, self.turn) - 0.5 * self.turn
             return goal.weight * away, goal.weight * by_x
@@ -290,25 +290,25 @@ class _RowMisses(Misses):
         self.asked = {name: model.quantities.find(name) for name in names}
         if not names:
             raise InputError(f'"{goal.of}" has no quantity of the mechanism')
-        for asked in self.asked.values():
-            _check(asked, goal.of)
-            asked.check_rate(model.speed)
-        super().__init__(goal, at, max(asked.needs for asked in self.asked.values()))
+        for quantity in self.asked.values():
+            _check(quantity, goal.of)
+            quantity.check_rate(model.speed)
+        super().__init__(goal, at, max(quantity.needs for quantity in self.asked.values()))
         self.angle = model.description.angle
-        own = self.asked.get(goal.of)
-        if own is not None and own.own.kind is Kind.ANGLE and own.rate is None:
+        measured = self.asked.get(goal.of)
+        if measured is not None and measured.own.kind is Kind.ANGLE and measured.rate is None:
             self.turn = FULL_TURN / model.units.scale(Kind.ANGLE)
 
-    def values(self, found: LanePositions) -> tuple[Array, Array]:
+    def values(self, positions: LanePositions) -> tuple[Array, Array]:
         """See :meth:`Misses.values`."""
-        rows = found.rated(self.order)
-        known = {name: asked.values(rows, rows.speed) for name, asked in self.asked.items()}
+        rows = positions.rated(self.order)
+        known = {name: quantity.values(rows, rows.speed) for name, quantity in self.asked.items()}
         if self.node is None:
             total = known[self.goal.of]
         else:
             jets = {name: Jet(value, _ZERO, _ZERO) for name, value in known.items()}
             total = evaluate(self.node, jets, self.angle).v
-        return found.totals(rows, total)
+        return positions.totals(rows, total)
 
 
 class _TransmissionMisses(_RowMisses):
@@ -318,9 +318,9 @@ class _TransmissionMisses(_RowMisses):
         super().__init__(model, goal, at)
         self.between = BetweenRows(at)
 
-    def values(self, found: LanePositions) -> tuple[Array, Array]:
+    def values(self, positions: LanePositions) -> tuple[Array, Array]:
         """See :meth:`Misses.values`."""
-        value, by_x = super().values(found)
+        value, by_x = super().values(positions)
         if not self.between.is_regular:
             return value, by_x
         # of two bounds that one which is nearer
@@ -338,10 +338,10 @@ class NumberMisses(Misses):
         text, self.there = goal.of, there
         self.calls = {_NUMBER.format(k): call for k, call in enumerate(calls)}
         self.asked = {n: model.quantities.find_of_motion(call) for n, call in self.calls.items()}
-        for name, asked in self.asked.items():
+        for name, request in self.asked.items():
             text = text.replace(self.calls[name], f"({name})")
-            _check(asked.of, goal.of)
-            asked.of.check_rate(model.speed)
+            _check(request.of, goal.of)
+            request.of.check_rate(model.speed)
         self.node: Node = parse(text)
         others = set(_names(self.node)) - set(self.asked)
         if others:
@@ -352,7 +352,7 @@ class NumberMisses(Misses):
         if len(table) > 2 and there.all():
             table = _divided(table, parts_of(table, Kind(model.equations.inputs[0].kind)))
             self.there = np.ones(len(table), dtype=bool)
-        super().__init__(goal, table, max(asked.needs for asked in self.asked.values()))
+        super().__init__(goal, table, max(request.needs for request in self.asked.values()))
         self.angle = model.description.angle
 
     @property
@@ -365,12 +365,12 @@ class NumberMisses(Misses):
         jets = {n: Jet(np.array(motion.value(c)), _ZERO, _ZERO) for n, c in self.calls.items()}
         return float(evaluate(self.node, jets, self.angle).v)
 
-    def values(self, found: LanePositions) -> tuple[Array, Array]:
+    def values(self, positions: LanePositions) -> tuple[Array, Array]:
         """See :meth:`Misses.values`."""
-        rows = found.rated(self.order)
-        known = {name: self._number(asked, found, rows) for name, asked in self.asked.items()}
-        count = found.shape[0]
-        by_x = np.zeros((count, found.slopes.shape[2] - 1))
+        rows = positions.rated(self.order)
+        known = {name: self._number(number, positions, rows) for name, number in self.asked.items()}
+        count = positions.shape[0]
+        by_x = np.zeros((count, positions.slopes.shape[2] - 1))
         total = np.zeros(count)
         for name in known:
             # the formula's derivative by this number
@@ -383,24 +383,26 @@ class NumberMisses(Misses):
             by_x = by_x + np.broadcast_to(jet.d1, count)[:, None] * known[name][1]
         return total[:, None], by_x[:, None, :]
 
-    def _number(self, asked: AskedOfMotion, found: LanePositions, rows: Any) -> tuple[Array, Array]:
+    def _number(
+        self, number: AskedOfMotion, lanes: LanePositions, rows: Any
+    ) -> tuple[Array, Array]:
         """A number (D,), whose derivatives (D, P) weigh those of rows."""
-        columns = asked.columns(rows, rows.speed)[: 1 + asked.quantity.needs]
-        plain = [found.plain(column) for column in columns]
+        columns = number.columns(rows, rows.speed)[: 1 + number.quantity.needs]
+        plain = [lanes.plain(column) for column in columns]
         weights: list[AnyArray] = [np.zeros(part.shape, dtype=part.dtype) for part in plain]
-        lost = [np.full(found.shape, np.nan)] * (3 - len(plain))
-        located = bool(asked.quantity.sides) and found.shape[1] > 2
+        lost = [np.full(lanes.shape, np.nan)] * (3 - len(plain))
+        located = bool(number.quantity.sides) and lanes.shape[1] > 2
         if located:
-            step = step_of(self.at, asked.names.inputs[asked.names.lead])
-            given = self.at, plain[0], asked.quantity.sides, step
-            numbers, weights[0] = interpolated_extremes(*given)
+            step = step_of(self.at, number.names.inputs[number.names.lead])
+            arguments = self.at, plain[0], number.quantity.sides, step
+            numbers, weights[0] = interpolated_extremes(*arguments)
         else:
-            numbers = asked.evaluate(self.at, *plain, *lost)
+            numbers = number.evaluate(self.at, *plain, *lost)
         # a design that loses positions has no number to compare
-        numbers[(~found.found.reshape(found.shape) & self.there).any(axis=1)] = np.nan
+        numbers[(~lanes.solved.reshape(lanes.shape) & self.there).any(axis=1)] = np.nan
         for k in () if located else np.flatnonzero(np.isfinite(numbers)):
-            own = [part[k] for part in (*plain, *lost)]
-            slopes = _one_sided_slopes(asked, self.at, *own)
+            series = [part[k] for part in (*plain, *lost)]
+            slopes = _one_sided_slopes(number, self.at, *series)
             for weight, part in zip(
                 weights, (slopes.value, slopes.first, slopes.second), strict=False
             ):
@@ -408,7 +410,7 @@ class NumberMisses(Misses):
         total: Any = 0.0
         for weight, column in zip(weights, columns, strict=True):
             total = total + np.real(np.conj(weight.ravel()) * column)
-        _, by_x = found.totals(rows, total)
+        _, by_x = lanes.totals(rows, total)
         # rows of no weight may have no derivative
         used = np.any([weight != 0.0 for weight in weights], axis=0)
         return numbers, np.where(used[:, :, None], by_x, 0.0).sum(axis=1)
@@ -421,26 +423,26 @@ def _divided(table: Array, parts: int) -> Array:
 
 
 def _one_sided_slopes(
-    asked: AskedOfMotion, at: Array, value: AnyArray, *rates: AnyArray
+    request: AskedOfMotion, at: Array, value: AnyArray, *rates: AnyArray
 ) -> RowSlopes:
     """The derivatives of a number by its rows; where equal extremes have none, those of the last.
 
     A fit needs a direction: symmetric motions have equal extremes at both ends.
     """
-    slopes = asked.quantity.slopes(asked.rows(at, value, *rates), asked.numbers)
+    slopes = request.quantity.slopes(request.rows(at, value, *rates), request.numbers)
     parts = (slopes.value, slopes.first, slopes.second)
     if all(np.isfinite(part).all() for part in parts):
         return slopes
-    # just more than what counts as equal from row to row
+    # just more than the difference that counts as equal from row to row
     tilt = _TILT * np.nanmax(np.abs(value)) * np.arange(len(value))
-    return asked.quantity.slopes(asked.rows(at, value + tilt, *rates), asked.numbers)
+    return request.quantity.slopes(request.rows(at, value + tilt, *rates), request.numbers)
 
 
 def _is_transmission(model: Model, text: str) -> bool:
     if not _is_name(model, text):
         return False
-    found = model.quantities.find(text)
-    return found.row is TRANSMISSION_ANGLE and found.rate is None
+    quantity = model.quantities.find(text)
+    return quantity.row is TRANSMISSION_ANGLE and quantity.rate is None
 
 
 def _is_name(model: Model, text: str) -> bool:
@@ -455,13 +457,13 @@ def _names(node: Node) -> list[str]:
     return sorted({name.name for name in names_in(node)} - set(CONSTANTS))
 
 
-def _check(asked: Asked, of: str) -> None:
-    if asked.group is Group.EVIDENCE:
+def _check(quantity: Asked, of: str) -> None:
+    if quantity.group is Group.EVIDENCE:
         raise InputError(f'"{of}" cannot be a goal: it measures how a position was found')
-    if asked.row in asked.names.further:
+    if quantity.row in quantity.names.further:
         raise InputError(
             f'"{of}" cannot be a goal: the forces of designs are not known yet; ask for positions, '
             "velocities or accelerations"
         )
-    if asked.needs > 2:
+    if quantity.needs > 2:
         raise InputError(f'"{of}" cannot be a goal: positions have two derivatives')

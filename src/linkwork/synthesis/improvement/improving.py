@@ -53,7 +53,7 @@ __all__ = [
     "transmission_goals",
 ]
 
-FACTOR = 4.0  # by which lengths may change, unless bounds are given
+FACTOR = 4.0  # factor by which lengths may change, unless the task bounds them
 _SEARCH = 0.9  # share of the search in the work; the rest is proofs
 _FAR = 2.0  # longest numbers or links, by which others may change
 _FIRST = 0.6  # share of the first search, if starts may have to be led again
@@ -79,7 +79,7 @@ def improved_designs(
     """Different fits, sound ones first, then by their misses; or a front, in its order,
     and the designs found on the way to it that are not sound.
 
-    ``is_sound``: what a design of a front has to be, besides undominated. ``enough``: so many sound
+    ``is_sound``: a condition on designs of a front. ``enough``: so many sound
     designs end the proofs of an interrupted search without a front. An interruption of the proofs
     keeps those done.
 
@@ -106,14 +106,14 @@ def improved_designs(
     except NotElementwise:
         raise InputError(_unfollowed(model, numbers)) from None
     if settings.front:
-        given = (model, numbers, box, others, fits, settings.front, is_sound)
-        front = front_designs(*given, search.tell_proofs)
+        arguments = (model, numbers, box, others, fits, settings.front, is_sound)
+        front = front_designs(*arguments, search.tell_proofs)
         return tuple(map(interrupted_design, front)) if search.interrupted else front
     designs = search.proved(fits, range(len(starts)), [])
-    locked = [k for k, own in designs if _locks(own)]
+    locked = [k for k, done in designs if _locks(done)]
     if locked and kept_off and not search.interrupted:
         search.begin, search.share = _FIRST, 1.0 - _FIRST if points else _AGAIN
-        known = [own for own in designs if own[1].sound or own[0] not in locked]
+        known = [done for done in designs if done[1].sound or done[0] not in locked]
         led = known
         try:
             fits = search.fits([*others, *kept_off], starts[locked])
@@ -122,17 +122,17 @@ def improved_designs(
             search.interrupted = True
         # starts that cannot be kept off, or are not led again, keep their designs
         again = {k for k, _ in led}
-        designs = led + [own for own in designs if own not in known and own[0] not in again]
-    # relations are what fits break that lose starts, lock or do not move
-    hampered = search.lost or any(_locks(own) or search.moved(own).unmoved for _, own in designs)
-    reached = points or search.interrupted or any(_is_reached(own) for _, own in designs)
+        designs = led + [done for done in designs if done not in known and done[0] not in again]
+    # fits that lose starts, lock or do not move break a relation
+    hampered = search.lost or any(_locks(done) or search.moved(done).unmoved for _, done in designs)
+    reached = points or search.interrupted or any(_is_reached(done) for _, done in designs)
     if hampered and not reached:
         designs = search.related(others, designs, len(starts))
     if search.interrupted and not designs:
         raise KeyboardInterrupt
-    told = interrupted_design if search.interrupted else search.moved
-    found = [told(own) for _, own in designs]
-    return tuple(sorted(found, key=partial(_rank, settings)))
+    explained = interrupted_design if search.interrupted else search.moved
+    results = [explained(done) for _, done in designs]
+    return tuple(sorted(results, key=partial(_rank, settings)))
 
 
 def _is_reached(design: ImprovedDesign) -> bool:
@@ -195,7 +195,7 @@ class _Search:
             def told(fraction: float, done: int = part) -> None:
                 self.tell(_SEARCH * (done + fraction) / len(paths))
 
-            given = Fitting(
+            fitting = Fitting(
                 model=model,
                 motion=motion,
                 numbers=self.numbers,
@@ -205,15 +205,15 @@ class _Search:
                 together=self.together,
             )
             if path is None and not settings.front and not _is_locked(motion):
-                self.before = misses_before(given, minimax=settings.fit == "minimax")
+                self.before = misses_before(fitting, minimax=settings.fit == "minimax")
             if settings.front:
-                found = fit_front(given, starts, settings.front, progress=told)
+                fit = fit_front(fitting, starts, settings.front, progress=told)
             else:
-                found = fit_numbers(given, starts, minimax=settings.fit == "minimax", progress=told)
-            fits.append((path, found))
+                fit = fit_numbers(fitting, starts, minimax=settings.fit == "minimax", progress=told)
+            fits.append((path, fit))
             self.begun += len(starts)
-            self.lost += len(starts) - int(np.isfinite(found.total).sum())
-            self.interrupted |= found.interrupted
+            self.lost += len(starts) - int(np.isfinite(fit.total).sum())
+            self.interrupted |= fit.interrupted
             if self.interrupted:
                 break
         return fits
@@ -225,12 +225,12 @@ class _Search:
 
         ``count``: so many starts for each kind of relation.
         """
-        own = self.numbers, self.box, self.together
+        saved = self.numbers, self.box, self.together
         motion = sweep(self.model, certify=False)
         rng = np.random.default_rng(self.settings.seed)
         for k, together in enumerate(kept_relations(self.model, motion, self.numbers)):
             self.begin, self.share = _FIRST + _AGAIN + k * _RELATED, _RELATED
-            self.together, self.box = together, together.box(own[1])
+            self.together, self.box = together, together.box(saved[1])
             spread = self.settings.spread * rng.uniform(-1.0, 1.0, (count, len(together.sizes)))
             spread[0] = 0.0
             starts = self.box.inside(together.sizes * (1.0 + spread))
@@ -242,7 +242,7 @@ class _Search:
                 self.interrupted = True
             if self.interrupted or any(_is_reached(design) for _, design in known):
                 break
-        _, self.box, self.together = own
+        _, self.box, self.together = saved
         return known
 
     def proved(
@@ -254,22 +254,22 @@ class _Search:
         """Known designs and different ones of fits from starts with these numbers, the best first,
         each with the number of its start.
         """
-        designs, sound = [*known], sum(self.is_sound(own) for _, own in known)
+        designs, sound = [*known], sum(self.is_sound(design_known) for _, design_known in known)
         minimax = self.settings.fit == "minimax"
         best = sorted(
-            (float((found.largest if minimax else found.total)[k]), part, int(k))
-            for part, (_, found) in enumerate(fits)
-            for k in np.flatnonzero(np.isfinite(found.total))
+            (float((fit.largest if minimax else fit.total)[k]), part, int(k))
+            for part, (_, fit) in enumerate(fits)
+            for k in np.flatnonzero(np.isfinite(fit.total))
         )
         try:
             for done, (_, part, k) in enumerate(best):
                 self.tell_proofs(done / len(best))
                 if self.interrupted and self.enough is not None and sound >= self.enough:
                     break
-                path, found = fits[part]
-                if not _is_known(found.x[k], [own for _, own in designs]):
-                    design = fitted_design(self.model, self.numbers, path, found, k)
-                    designs.append((starts[int(found.start[k])], design))
+                path, fit = fits[part]
+                if not _is_known(fit.x[k], [design_known for _, design_known in designs]):
+                    design = fitted_design(self.model, self.numbers, path, fit, k)
+                    designs.append((starts[int(fit.start[k])], design))
                     sound += self.is_sound(design)
         except KeyboardInterrupt:
             self.interrupted = True
@@ -282,14 +282,14 @@ class _Search:
         still = _is_known(x, [design]) or misses >= self.before * (1.0 - _EQUAL_NUMBERS)
         if not still or _is_reached(replace(design, sound=True)):
             return design
-        told = "nothing improved: the mechanism as it was is no farther from its goals; "
+        reason = "nothing improved: the mechanism as it was is no farther from its goals; "
         if self.lost:
-            told += f"{self.lost} of {self.begun} starts have no position on its branch"
+            reason += f"{self.lost} of {self.begun} starts have no position on its branch"
         else:
-            told += "no small change of those that vary brings its goals nearer"
+            reason += "no small change of those that vary brings its goals nearer"
         if design.goals:
-            told += f"; it misses {', '.join(f'{n} by {m:.4g}' for n, m in design.goals.items())}"
-        return replace(design, sound=False, unmoved=told, message=f"{design.message}; {told}")
+            reason += f"; it misses {', '.join(f'{n} by {m:.4g}' for n, m in design.goals.items())}"
+        return replace(design, sound=False, unmoved=reason, message=f"{design.message}; {reason}")
 
     def tell_proofs(self, fraction: float) -> None:
         """A fraction of the proofs is done; an interruption of the telling does not end them."""
@@ -304,36 +304,36 @@ def transmission_goals(model: Model, least: float) -> Iterator[Aid]:
     """A least transmission angle of all dyads, as bounds in all rows [rad]."""
     angle = model.description.angle
     bound = angle.from_radians(least)
-    for name, asked in model.quantities.derived.items():
-        if asked.row is TRANSMISSION_ANGLE:
+    for name, quantity in model.quantities.derived.items():
+        if quantity.row is TRANSMISSION_ANGLE:
             yield Aid(of=name, least=bound, most=angle.turn / 2.0 - bound)
 
 
 def _check(settings: Improvement, goals: Sequence[Goal | Points]) -> None:
-    found = [*settings.problems(), *settings.front_problems(goals)]
+    problems = [*settings.problems(), *settings.front_problems(goals)]
     for k, goal in enumerate(goals):
-        found += [(("goals", k, *key), message) for key, message in goal.problems()]
+        problems += [(("goals", k, *key), message) for key, message in goal.problems()]
     if not goals:
-        found.append((("goals",), "are missing: say what is wanted"))
+        problems.append((("goals",), "are missing: add a goal"))
     if sum(isinstance(goal, Points) for goal in goals) > 1:
-        found.append((("goals",), "name points twice: one point follows them"))
-    if found:
-        raise MechanismError([Problem(key=k, message=m) for k, m in found], "the improvement")
+        problems.append((("goals",), "name points twice: one point follows them"))
+    if problems:
+        raise MechanismError([Problem(key=k, message=m) for k, m in problems], "the improvement")
 
 
 def numbers_to_vary(model: Model, names: Sequence[str]) -> tuple[VariedNumber, ...]:
-    """The numbers asked for, or all lengths, angles, offsets, dimensions and fixed pivots whose
-    changes a fit follows.
+    """The numbers that the settings name, or all lengths, angles, offsets, dimensions and fixed
+    pivots whose changes a fit can follow.
     """
     numbers, _ = chosen_numbers(model, names or None)
     if names:
         return numbers
     description = model.description
     fixed = set(description.links.get(GROUND, ())) if isinstance(description, Draft) else set()
-    # a given distance of fixed pivots holds their coordinates, and follows from them
+    # the length between two fixed pivots determines their coordinates, and follows from them
     lengths = description.lengths if isinstance(description, Draft) else ()
-    given = [set(name.split()) for name in lengths]
-    held = set().union(*(ends for ends in given if ends <= fixed))
+    ends_of_lengths = [set(name.split()) for name in lengths]
+    held = set().union(*(ends for ends in ends_of_lengths if ends <= fixed))
     usual = tuple(
         q
         for q in numbers
@@ -384,10 +384,10 @@ def box_of(model: Model, numbers: Sequence[VariedNumber], settings: Improvement)
 def _unfollowed(model: Model, numbers: Sequence[VariedNumber]) -> str:
     """Which numbers a fit cannot vary, in words."""
     names = [f'"{number.name}"' for number in numbers if not _is_followed(model, [number])]
-    own = f'of "{model.description.name}"'
+    of_mechanism = f'of "{model.description.name}"'
     if not names:
-        return f"a fit cannot vary all these numbers {own} together: vary fewer"
-    return f"a fit cannot vary {', '.join(names)} {own}: vary other numbers"
+        return f"a fit cannot vary all these numbers {of_mechanism} together: vary fewer"
+    return f"a fit cannot vary {', '.join(names)} {of_mechanism}: vary other numbers"
 
 
 def _is_known(x: Array, designs: Sequence[ImprovedDesign]) -> bool:

@@ -25,11 +25,11 @@ STARTS = 16
 
 
 def spread_starts(model: Model, numbers: Sequence[VariedNumber], settings: Improvement) -> Array:
-    """Numbers (D, P) around those of the mechanism, its own first."""
+    """Numbers (D, P) around those of the mechanism, which come first."""
     x = np.array([float(q.of(model.description)) for q in numbers])
     rng = np.random.default_rng(settings.seed)
     count = settings.starts or STARTS
-    # a number of 0 spreads by the size of what it measures
+    # a number of 0 spreads by the size of its quantity
     sizes = np.where(x == 0.0, _sizes(model, numbers, x), x)
     starts = x + settings.spread * sizes * rng.uniform(-1.0, 1.0, (count, len(x)))
     starts[0] = x
@@ -37,7 +37,7 @@ def spread_starts(model: Model, numbers: Sequence[VariedNumber], settings: Impro
 
 
 def _sizes(model: Model, numbers: Sequence[VariedNumber], x: Array) -> Array:
-    """Sizes of what numbers (P,) measure: a radian, or the longest link or distance of points."""
+    """Sizes of numbers (P,): a radian, or the longest link or distance of points."""
     description = model.description
     # of dimensions the kind is not known
     largest = float(np.abs(x[[q.table != "angles" for q in numbers]]).max(initial=0.0))
@@ -52,7 +52,7 @@ def _sizes(model: Model, numbers: Sequence[VariedNumber], x: Array) -> Array:
 
 
 # ----------------------------------------------------------------------
-# Numbers that change together, so that a mechanism keeps what special dimensions give it.
+# Numbers that change together, so that a mechanism keeps its special dimensions.
 #
 # Equal sides of parallelograms, centre distances of gears and the sides of inversors are relations
 # without which designs lock, or have no position. A fit of single numbers soon breaks them.
@@ -83,7 +83,7 @@ class Together:
     @classmethod
     def of(cls, x: Array, groups: Sequence[Array]) -> Together:
         """Groups by their directions (P,), which are disjoint and not zero."""
-        sizes = np.array([np.abs(own).max() for own in groups])
+        sizes = np.array([np.abs(group).max() for group in groups])
         return cls(x=x, sizes=sizes, slopes=np.stack(groups, axis=1) / sizes)
 
     def numbers(self, sizes: Array) -> Array:
@@ -107,8 +107,8 @@ class Together:
 def kept_relations(
     model: Model, motion: Motion, numbers: Sequence[VariedNumber]
 ) -> Iterator[Together]:
-    """Equal lengths that stay equal, the ground in proportion, without what cannot change alone;
-    then all lengths in proportion.
+    """Directions of change: equal lengths stay equal and the ground in proportion; numbers that
+    cannot change alone are left out. Last, all lengths in proportion.
     """
     x = np.array([float(q.of(model.description)) for q in numbers])
     if len(x) < 2:
@@ -116,18 +116,18 @@ def kept_relations(
     scaled = _scaled(model, numbers, x)
     free = []
     for group in _groups(model, numbers, x, scaled):
-        # what cannot change together may change alone
+        # numbers that cannot change together may change alone
         alone = [group, *(np.eye(len(x)) * group)[group != 0.0]]
-        moving = [own for own in alone if _moves(model, motion, numbers, x + _TRIED * own)]
+        moving = [step for step in alone if _moves(model, motion, numbers, x + _TRIED * step)]
         free += moving[:1] if moving and moving[0] is group else moving
     if free and len(free) < len(numbers):
         yield Together.of(x, free)
-    if scaled.any() and not any(np.array_equal(scaled, own) for own in free):
+    if scaled.any() and not any(np.array_equal(scaled, step) for step in free):
         yield Together.of(x, [scaled])
 
 
 def _scaled(model: Model, numbers: Sequence[VariedNumber], x: Array) -> Array:
-    """The change of numbers (P,) if all lengths grow about the first fixed pivot; 0 of others."""
+    """The change of numbers (P,) if all lengths grow about the first fixed pivot, else 0."""
     description = model.description
     center = np.zeros(2)
     if isinstance(description, Draft):
@@ -167,12 +167,12 @@ def _groups(
     left -= set(alike)
     while left:
         k = min(left)
-        own = _same(x, left, scaled, (abs(x[k]),)) if scaled[k] else [k]
+        members = _same(x, left, scaled, (abs(x[k]),)) if scaled[k] else [k]
         direction = np.zeros(len(x))
         # a number of 0 has no proportion
-        direction[own] = np.where(x[own] == 0.0, 1.0, x[own])
+        direction[members] = np.where(x[members] == 0.0, 1.0, x[members])
         yield direction
-        left -= set(own)
+        left -= set(members)
 
 
 def _same(x: Array, among: set[int], scaled: Array, sizes: Sequence[float]) -> list[int]:
@@ -188,7 +188,7 @@ def _moves(model: Model, motion: Motion, numbers: Sequence[VariedNumber], x: Arr
     """Whether a mechanism with other numbers has as many positions."""
     try:
         other = with_numbers(model.description, dict(zip(numbers, map(float, x), strict=True)))
-        found = sweep(model_of(other), certify=False).found
+        solved = sweep(model_of(other), certify=False).found
     except LinkworkError:
         return False
-    return int(found.sum()) >= int(motion.found.sum())
+    return int(solved.sum()) >= int(motion.found.sum())

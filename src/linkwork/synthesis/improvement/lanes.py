@@ -38,7 +38,7 @@ class DesignWriter:
     ----------
     model : Model
     numbers : sequence of VariedNumber
-        Those that designs have of their own, P.
+        The numbers that differ from design to design, P.
 
     Raises
     ------
@@ -59,22 +59,22 @@ class DesignWriter:
         )
         #: Of the terms of loops; plain numbers, too.
         self.coefficients: list[Any] = [term.value for row in rows for term in row]
-        found = [self.speed, *self.coefficients]
-        self.equations.mapped(found.append)
-        self._numbers = {x.node: x for x in found if isinstance(x, TapedNumber)}
+        recorded = [self.speed, *self.coefficients]
+        self.equations.mapped(recorded.append)
+        self._numbers = {x.node: x for x in recorded if isinstance(x, TapedNumber)}
         self._record.keep(list(self._numbers.values()))
 
     def written(self, x: Array) -> WrittenDesigns:
         """The equations of designs (D, P), file units."""
-        fine, found = self._record.follow(x.T)
+        fine, values = self._record.follow(x.T)
         return WrittenDesigns(
-            writer=self, x=x, fine=fine, known=dict(zip(self._numbers, found, strict=True))
+            writer=self, x=x, fine=fine, known=dict(zip(self._numbers, values, strict=True))
         )
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class WrittenDesigns:
-    """The equations of D designs with P numbers of their own.
+    """The equations of D designs that differ in P numbers.
 
     Parameters
     ----------
@@ -82,7 +82,7 @@ class WrittenDesigns:
     x : (D, P)
         File units.
     fine : (D,) bool
-        Designs whose equations have the form of the mechanism's own.
+        Designs whose equations have the same form as those of the mechanism.
     known : dict
         The writer's numbers by node: values (D,), and derivatives by x, (P, D).
     """
@@ -130,9 +130,9 @@ class LaneRows(DifferentiatedRows):
 
     def _number(self, values: AnyArray, rates: AnyArray) -> Any:
         """A number on the tape of the rows."""
-        found: Any = self.tape.number(values)
-        self._given[found.node] = rates
-        return found
+        number: Any = self.tape.number(values)
+        self._given[number.node] = rates
+        return number
 
     def _spread(self, number: Any) -> Any:
         """A number of the designs in their rows."""
@@ -202,13 +202,13 @@ class LaneEquations:
     def __init__(self, designs: WrittenDesigns, rows: int) -> None:
         self.designs, self.rows = designs, rows
         self.loops, coefficients = designs.writer.loops, designs.writer.coefficients
-        own = np.tile(self.loops.coefficient, (len(designs.x), 1))
-        self._by_numbers = np.zeros((*own.shape, designs.x.shape[1]), dtype=complex)
+        by_lane = np.tile(self.loops.coefficient, (len(designs.x), 1))
+        self._by_numbers = np.zeros((*by_lane.shape, designs.x.shape[1]), dtype=complex)
         for k, number in enumerate(coefficients):
             if isinstance(number, TapedNumber):
-                own[:, k], rate = designs.known[number.node]
+                by_lane[:, k], rate = designs.known[number.node]
                 self._by_numbers[:, k] = rate.T
-        self._coefficients = np.repeat(own, rows, axis=0)
+        self._coefficients = np.repeat(by_lane, rows, axis=0)
 
     @np.errstate(all="ignore")  # rows without a position are no numbers
     def at(self, v: Array) -> tuple[Array, Array]:
@@ -225,12 +225,12 @@ class LaneEquations:
         """F by the numbers, (B, m, P)."""
         designs, terms, numbers = self._by_numbers.shape
         bare = self.loops.by_coefficients(v).reshape(designs, self.rows, terms)
-        found = np.empty((len(v), self.loops.rows, numbers), dtype=complex)
+        result = np.empty((len(v), self.loops.rows, numbers), dtype=complex)
         for row in range(self.loops.rows):
-            own = self.loops.row == row
-            found[:, row] = (bare[:, :, own] @ self._by_numbers[:, own]).reshape(len(v), numbers)
+            part = self.loops.row == row
+            result[:, row] = (bare[:, :, part] @ self._by_numbers[:, part]).reshape(len(v), numbers)
         _, slopes = self._further(v)
-        return np.concatenate([found.real, found.imag, slopes[:, :, :numbers]], axis=1)
+        return np.concatenate([result.real, result.imag, slopes[:, :, :numbers]], axis=1)
 
     def _further(self, v: Array) -> tuple[Array, Array]:
         """All equations but loops, by the numbers and by the variables."""
@@ -274,7 +274,7 @@ class LanePositions:
 
     rows: LaneRows
     slopes: Array
-    found: BoolArray
+    solved: BoolArray
     shape: tuple[int, int]
     inverse: Array
     sign: Array
@@ -287,7 +287,7 @@ class LanePositions:
         """
         value, slope = (rows or self.rows).slopes(results)
         shape = *self.shape, len(results)
-        value = np.where(self.found[:, None], value, np.nan).reshape(shape)
+        value = np.where(self.solved[:, None], value, np.nan).reshape(shape)
         slope = slope.reshape(*shape, slope.shape[2])
         return value, slope[..., :-1], slope[..., -1]
 
@@ -308,8 +308,8 @@ class LanePositions:
 
     def plain(self, column: Any) -> AnyArray:
         """The values of a column of rows, (D, N); NaN where there is no position."""
-        values = np.broadcast_to(getattr(column, "values", column), len(self.found))
-        return np.where(self.found, values, np.nan).reshape(self.shape)
+        values = np.broadcast_to(getattr(column, "values", column), len(self.solved))
+        return np.where(self.solved, values, np.nan).reshape(self.shape)
 
 
 def inputs_away(at: Array, motion: Motion, model: Model) -> Array:
@@ -357,15 +357,15 @@ class SolvedLanes:
         self._sign = first.sign
         self.by_x[:] = first.slopes[:, :n, :-1].reshape(1, rows, n, len(x))
         self.by_t[:] = first.slopes[:, :n, -1].reshape(1, rows, n)
-        self._known = np.broadcast_to(first.found, (lanes, rows)).copy()
-        if first.found.any():
-            near = self._nearest(first.found)
+        self._known = np.broadcast_to(first.solved, (lanes, rows)).copy()
+        if first.solved.any():
+            near = self._nearest(first.solved)
             self._sign = first.sign[:, near]  # rows that do not close are on the same branch
             for lane in range(lanes):
                 self._lend(lane, near)
 
     def copy_lanes(self, of: IndexArray, to: IndexArray) -> None:
-        """Begin lanes where others are now."""
+        """Start lanes at the present state of other lanes."""
         for kept in (self.x, self.t, self.q, self.by_x, self.by_t, self._known):
             kept[to] = kept[of]
 
@@ -413,33 +413,33 @@ class SolvedLanes:
         return LanePositions(
             rows=LaneRows(designs, solved, slopes),
             slopes=slopes,
-            found=fine,
+            solved=fine,
             shape=(count, rows),
             inverse=inverse,
             sign=sign,
         )
 
     def keep(
-        self, found: LanePositions, x: Array, t: Array, lanes: IndexArray, total: Array
+        self, positions: LanePositions, x: Array, t: Array, lanes: IndexArray, total: Array
     ) -> None:
         """Remember designs that are better than the last ones of their lanes."""
         better = total < self.total[lanes]
         self.total[lanes[better]] = total[better]
-        which = np.nonzero(found.found.reshape(found.shape) & better[:, None])
+        which = np.nonzero(positions.solved.reshape(positions.shape) & better[:, None])
         to, n = (lanes[which[0]], which[1]), self.q.shape[2]
-        shape = *found.shape, n
+        shape = *positions.shape, n
         self.x[to], self.t[to] = x[which[0]], t[which]
-        self.q[to] = found.rows.solution[:, :n].reshape(shape)[which]
-        self.by_x[to] = found.slopes[:, :n, :-1].reshape(*shape, x.shape[1])[which]
-        self.by_t[to] = found.slopes[:, :n, -1].reshape(shape)[which]
+        self.q[to] = positions.rows.solution[:, :n].reshape(shape)[which]
+        self.by_x[to] = positions.slopes[:, :n, :-1].reshape(*shape, x.shape[1])[which]
+        self.by_t[to] = positions.slopes[:, :n, -1].reshape(shape)[which]
         self._known[to] = True
-        closed = found.found.reshape(found.shape)
+        closed = positions.solved.reshape(positions.shape)
         for k in np.flatnonzero(better & closed.any(axis=1)):
             if not self._known[lanes[k]].all():
                 self._lend(lanes[k], self._nearest(closed[k]))
 
     def _away(self, rows: IndexArray) -> Array:
-        """The way of the leading input from rows (N,) to their own, a half turn at most."""
+        """The change of the leading input from rows (N,) to the lane, at most half a turn."""
         away = self.rows_at - self.rows_at[rows]
         if self.model.equations.inputs[self.lead].kind == Kind.ANGLE.value:
             away = np.mod(away + 0.5 * FULL_TURN, FULL_TURN) - 0.5 * FULL_TURN

@@ -102,33 +102,33 @@ def fitted_design(
     model: Model,
     numbers: Sequence[VariedNumber],
     path: PathGoal | None,
-    found: FittedNumbers,
+    fit: FittedNumbers,
     k: int,
 ) -> ImprovedDesign:
     """The design of one lane of a fit."""
-    told = _INTERRUPTED if found.interrupted else ""
-    new = dict(zip(numbers, map(float, found.x[k]), strict=True))
+    message = _INTERRUPTED if fit.interrupted else ""
+    new = dict(zip(numbers, map(float, fit.x[k]), strict=True))
     design = replace(
         proved_design(
-            with_numbers(model.description, new), {q.name: x for q, x in new.items()}, told
+            with_numbers(model.description, new), {q.name: x for q, x in new.items()}, message
         ),
-        total=float(found.total[k]),
-        largest=float(found.largest[k]),
-        goals=dict(zip(found.names, map(float, found.objectives[k]), strict=True)),
+        total=float(fit.total[k]),
+        largest=float(fit.largest[k]),
+        goals=dict(zip(fit.names, map(float, fit.objectives[k]), strict=True)),
     )
-    broken = [*_broken(found, k)]
+    broken = [*_broken(fit, k)]
     if broken:
-        told = "; ".join([design.message, *broken])
-        design = replace(design, broken=tuple(broken), sound=False, message=told)
+        message = "; ".join([design.message, *broken])
+        design = replace(design, broken=tuple(broken), sound=False, message=message)
     if path is None:
         return design
-    rms = float(np.sqrt(found.path[k] / len(path.places)))
-    return _on_path(replace(design, rms=rms), model, numbers, path, found.t[k])
+    rms = float(np.sqrt(fit.path[k] / len(path.places)))
+    return _on_path(replace(design, rms=rms), model, numbers, path, fit.t[k])
 
 
-def _broken(found: FittedNumbers, k: int) -> Iterator[str]:
+def _broken(fit: FittedNumbers, k: int) -> Iterator[str]:
     """The bounds that a design breaks, in words."""
-    for goal, (below, above) in zip(found.bounds, found.beyond[k], strict=True):
+    for goal, (below, above) in zip(fit.bounds, fit.beyond[k], strict=True):
         least, most = goal.least, goal.most
         if least is not None and below > 0.0:
             down = told_beside(least - below, least)
@@ -140,16 +140,16 @@ def _broken(found: FittedNumbers, k: int) -> Iterator[str]:
 
 def interrupted_design(design: ImprovedDesign) -> ImprovedDesign:
     """A design that says that it is the best so far."""
-    told = design.message.removeprefix(_INTERRUPTED)
-    return replace(design, message=f"{_INTERRUPTED}{told}")
+    message = design.message.removeprefix(_INTERRUPTED)
+    return replace(design, message=f"{_INTERRUPTED}{message}")
 
 
 def proved_design(
-    description: Description, numbers: Mapping[str, float] = FrozenDict(), told: str = ""
+    description: Description, numbers: Mapping[str, float] = FrozenDict(), text: str = ""
 ) -> ImprovedDesign:
     """A mechanism with its proof: a certified sweep of its whole table.
 
-    ``numbers``: those that were found; ``told``: the beginning of the message.
+    ``numbers``: the result of the fit; ``text``: the beginning of the message.
     """
     motion, whole, near_dead = None, None, ""
     try:
@@ -160,14 +160,14 @@ def proved_design(
         end = branch_end(motion)
         near_dead = "" if lost or end is not None else nearly_dead(motion, whole)
         sound = not (lost or end is not None or near_dead)
-        told += f"{lost} of {len(motion)} rows are not proved" if lost else "all rows are proved"
+        text += f"{lost} of {len(motion)} rows are not proved" if lost else "all rows are proved"
         if end is not None:
             lead = next(iter(motion.inputs))
-            told += f"; the branch ends at the {end.kind.word} "
-            told += end.told(lead, motion.input_units[lead])
-        told += f"; {near_dead}" if near_dead else ""
+            text += f"; the branch ends at the {end.kind.word} "
+            text += end.told(lead, motion.input_units[lead])
+        text += f"; {near_dead}" if near_dead else ""
     except LinkworkError as error:
-        sound, told = False, f"{told}{error}"
+        sound, text = False, f"{text}{error}"
     return ImprovedDesign(
         description=description,
         numbers=numbers,
@@ -175,7 +175,7 @@ def proved_design(
         largest=np.nan,
         rms=0.0,
         sound=sound,
-        message=told,
+        message=text,
         near_dead=near_dead,
         motion=motion,
         whole_motion=whole,
@@ -189,15 +189,17 @@ def _on_path(
     path: PathGoal,
     t: Array,
 ) -> ImprovedDesign:
-    """The design with its distances from the points, measured on its own proved branch."""
+    """The design with its distances from the points, measured on its proved branch."""
     order = slice(None, None, -1 if path.falling else 1)
-    own = tuple(map(float, t[order] / model.input_scale[0]))
-    misses = np.full(len(own), np.nan)
+    places = tuple(map(float, t[order] / model.input_scale[0]))
+    misses = np.full(len(places), np.nan)
     if design.motion is not None and design.motion.found.any():
         x = np.array(list(design.numbers.values()))
         at = replace(path, inputs=t, timed=True)
         misses = path_misses(model_of(design.description), design.motion, numbers, at, x)[order]
-    told, sound = design.message, design.sound
+    text, sound = design.message, design.sound
     if not np.isfinite(misses).all():
-        told, sound = f"{told}; not all points lie on the branch of its table", False
-    return replace(design, inputs=own, misses=tuple(map(float, misses)), sound=sound, message=told)
+        text, sound = f"{text}; not all points lie on the branch of its table", False
+    return replace(
+        design, inputs=places, misses=tuple(map(float, misses)), sound=sound, message=text
+    )

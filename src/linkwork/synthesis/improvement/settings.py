@@ -1,4 +1,4 @@
-"""What is asked of a whole motion: the least transmission angle, and contact with circles."""
+"""Requirements on a whole motion: the least transmission angle, and contact with circles."""
 
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ class LeastAngle:
 
 @dataclass(frozen=True, kw_only=True)
 class Contact:
-    """``met``: the side in a circle and the input there, if one is found; ``open``: the interval
+    """``met``: a side that meets a circle, and the input there, if any; ``open``: the interval
     of the input in which contact is not excluded.
     """
 
@@ -47,9 +47,9 @@ class MotionBounds(Protocol):
     def dyads(self) -> tuple[Dyad, ...]:
         """The dyads with a transmission angle, one for each pin."""
 
-    def least_transmission(self, wanted: float) -> LeastAngle:
+    def least_transmission(self, least_wanted: float) -> LeastAngle:
         """The least transmission angle of all dyads, of which there is at least one, folded to 0 to
-        a quarter of a turn; ``wanted``: decide whether it is smaller than this [rad].
+        a quarter of a turn; ``least_wanted``: decide whether it is smaller than this [rad].
         """
 
     def contact(self, sides: Sequence[tuple[str, str]], circles: Array) -> Contact:
@@ -70,8 +70,8 @@ def least_in_rows(motion: Motion) -> float:
     half = motion.units.angle.turn / 2.0
     names = [n for n, a in motion.quantities.derived.items() if a.row is TRANSMISSION_ANGLE]
     # 40° and 140° transmit equally well
-    rows = [np.minimum(own, half - own) for own in (motion[n][motion.found] for n in names)]
-    return min((float(own.min()) for own in rows if len(own)), default=float("nan"))
+    rows = [np.minimum(angle, half - angle) for angle in (motion[n][motion.found] for n in names)]
+    return min((float(angle.min()) for angle in rows if len(angle)), default=float("nan"))
 
 
 def nearly_dead(motion: Motion, whole: MotionBounds | None) -> str:
@@ -81,18 +81,18 @@ def nearly_dead(motion: Motion, whole: MotionBounds | None) -> str:
     unit = motion.units.angle
     least, place = least_in_rows(motion) * unit.radians, ""
     if whole is not None and whole.dyads and least < _LOOKED_AT:
-        found = whole.least_transmission(_DEAD)
+        angle = whole.least_transmission(_DEAD)
         lead = motion.quantities.names.lead
         # where smaller angles are not excluded, they count
-        least, place = found.low, f" near {lead} = {found.at:.6g} {motion.input_units[lead]}"
-        least = found.high if found.high < _DEAD else least
+        least, place = angle.low, f" near {lead} = {angle.at:.6g} {motion.input_units[lead]}"
+        least = angle.high if angle.high < _DEAD else least
     if not least < _DEAD:
         return ""
     shown = f"{unit.from_radians(least):.2g}{unit.sign}"
-    told = (
-        f"{shown} or less is not excluded" if place and found.high >= _DEAD else f"down to {shown}"
+    bound = (
+        f"{shown} or less is not excluded" if place and angle.high >= _DEAD else f"down to {shown}"
     )
-    return f"nearly a dead point: transmission angle {told}{place}"
+    return f"nearly a dead point: transmission angle {bound}{place}"
 
 
 # ----------------------------------------------------------------------
@@ -111,16 +111,16 @@ Problems = Iterator[tuple[tuple[str | int, ...], str]]
 
 @dataclass(frozen=True, kw_only=True)
 class Goal:
-    """A wanted value of a quantity in some rows, or of a number of the whole motion, file units.
+    """A target of a quantity in some rows, or of a number of the whole motion, in file units.
 
     Parameters
     ----------
     of : str
         ``B.y``, ``rocker``, an output; or ``stroke(d)``, ``min(transmission)``.
     target, least, most : float, optional
-        The wanted value, or bounds.
+        The target value, or bounds.
     at, values : tuple of float
-        Inputs, and the values wanted there.
+        Inputs, and the target values there.
     weight : float
         How much a unit of the miss counts.
     """
@@ -141,24 +141,24 @@ class Goal:
     def problems(self) -> Problems:
         """What contradicts itself."""
         bounds = self.least, self.most
-        wanted = {"target": (self.target,), "least": (self.least,), "most": (self.most,)}
-        for key, numbers in {**wanted, "values": self.values}.items():
+        limits = {"target": (self.target,), "least": (self.least,), "most": (self.most,)}
+        for key, numbers in {**limits, "values": self.values}.items():
             for number in numbers:
                 if number is not None and not abs(number) <= _LARGEST:
                     yield (key,), f"must be within ±{_LARGEST:g}, got {number:g}"
         if self.values:
             if len(self.values) != len(self.at):
-                told = f"{len(self.values)} values for {len(self.at)} inputs: give as many"
-                yield ("values",), told
-            wanted_at: dict[float, float] = {}
+                message = f"{len(self.values)} values for {len(self.at)} inputs: give as many"
+                yield ("values",), message
+            value_at: dict[float, float] = {}
             for k, (at, value) in enumerate(zip(self.at, self.values, strict=False)):
-                if wanted_at.setdefault(at, value) != value:
-                    told = f"is another value than {wanted_at[at]:g} at {at:g}: leave one out"
-                    yield ("values", k), told
+                if value_at.setdefault(at, value) != value:
+                    message = f"is another value than {value_at[at]:g} at {at:g}: leave one out"
+                    yield ("values", k), message
             if self.target is not None or bounds != (None, None):
                 yield ("values",), "exclude target, least and most: give one goal for each"
         elif self.target is None and bounds == (None, None):
-            yield (), "has no target, least, most or values: say what is wanted"
+            yield (), "has no target, least, most or values: add one"
         if None not in bounds and self.least > self.most:  # type: ignore[operator]  # not None
             yield ("least",), f"{self.least:g} and most = {self.most:g} contradict each other"
         if self.target is not None and bounds != (None, None):
@@ -201,8 +201,8 @@ class Points:
             if one == other:
                 yield ("points", k - 1), f"is the same as point {k - 1}: leave one out"
         if self.inputs is not None and len(self.inputs) != len(self.points):
-            told = f"{len(self.points)} points need as many inputs, got {len(self.inputs)}"
-            yield ("inputs",), told
+            message = f"{len(self.points)} points need as many inputs, got {len(self.inputs)}"
+            yield ("inputs",), message
         if self.order not in _ORDERS:
             yield ("order",), f'must be "as given" or "any", got "{self.order}"'
         if self.order == "any" and self.inputs is not None:
@@ -212,7 +212,7 @@ class Points:
 _ORDERS = ("as given", "any")
 
 
-def read_goal(given: Mapping[str, Any]) -> Goal | Points:
+def read_goal(table: Mapping[str, Any]) -> Goal | Points:
     """A goal, or points, from a table with their fields.
 
     Raises
@@ -220,24 +220,24 @@ def read_goal(given: Mapping[str, Any]) -> Goal | Points:
     MechanismError
         For a key that neither has, or one that is missing.
     """
-    kind: type[Goal] | type[Points] = Points if "points" in given else Goal
-    known = [own.name for own in fields(kind)]
-    found = [
+    kind: type[Goal] | type[Points] = Points if "points" in table else Goal
+    known = [field.name for field in fields(kind)]
+    problems = [
         Problem(key=(key,), message=f"is no key of a goal {choices('keys', known, key)}")
-        for key in given
+        for key in table
         if key not in known
     ]
-    if kind is Goal and "of" not in given:
-        found.append(Problem(key=("of",), message="is missing: the quantity that is wanted"))
-    if found:
-        raise MechanismError(found, "the improvement")
-    return kind(**{key: _plain(entry) for key, entry in given.items()})
+    if kind is Goal and "of" not in table:
+        problems.append(Problem(key=("of",), message="is missing: the quantity of the goal"))
+    if problems:
+        raise MechanismError(problems, "the improvement")
+    return kind(**{key: _read_entry(entry) for key, entry in table.items()})
 
 
-def _plain(value: Any) -> Any:
+def _read_entry(value: Any) -> Any:
     """Arrays and lists as tuples of plain numbers."""
     value = value.tolist() if hasattr(value, "tolist") else value
-    return tuple(map(_plain, value)) if isinstance(value, list | tuple) else value
+    return tuple(map(_read_entry, value)) if isinstance(value, list | tuple) else value
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -285,11 +285,11 @@ class Improvement:
             number = getattr(self, name)
             whole = isinstance(number, int | np.integer) and least <= number <= most
             if not whole and number is not getattr(Improvement, name):
-                told = f"must be a whole number of {least} to {most}, got {as_told(number)}"
-                yield (name,), told
+                text = f"must be a whole number of {least} to {most}, got {as_told(number)}"
+                yield (name,), text
         if self.front and self.fit == "minimax":
-            told = "has no effect on a front, which does not add up its goals: leave it out"
-            yield ("goal",), told
+            text = "has no effect on a front, which does not add up its goals: leave it out"
+            yield ("goal",), text
         for name, pair in self.bounds.items():
             ends = [plain_number(end) for end in np.ravel(np.asarray(pair, dtype=object))]
             if len(ends) != 2 or None in ends:
@@ -304,13 +304,12 @@ class Improvement:
         """Goals between which there is no front."""
         if not self.front:
             return
-        own = [goal for goal in goals if isinstance(goal, Points) or not goal.is_bound]
-        if len(own) < 2:
-            told = (
-                f"lies between two goals or more, and {len(own) or 'none'} is given with a target"
-            )
-            yield ("front",), f"{told}: bounds only limit it"
+        targets = [goal for goal in goals if isinstance(goal, Points) or not goal.is_bound]
+        if len(targets) < 2:
+            count = len(targets) or "none"
+            message = f"lies between two goals or more, and {count} is given with a target"
+            yield ("front",), f"{message}: bounds only limit it"
         for k, goal in enumerate(goals):
             if isinstance(goal, Goal) and goal.weight != 1.0 and not goal.is_bound:
-                told = "has no effect on a front, whose goals are not summed: leave it out"
-                yield ("goals", k, "weight"), told
+                message = "has no effect on a front, whose goals are not summed: leave it out"
+                yield ("goals", k, "weight"), message

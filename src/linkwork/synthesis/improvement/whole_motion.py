@@ -35,7 +35,7 @@ from linkwork.synthesis.lane_least_squares import Box
 
 _MOST_BOXES = 20_000  # that a proof may take, besides those of the rows
 _MOST_OF_ANGLES = 60_000  # the same, for dyads that stay near a dead point
-_CLOSE = 1e-6  # rad: between the bounds of the least angle, unless a wanted one is between them
+_CLOSE = 1e-6  # rad: between the bounds of the least angle, unless the required one is between them
 _WHOLE_MOTION_ROUNDING = 1e-12  # rad: of angles in proved positions
 
 
@@ -45,7 +45,7 @@ class WholeMotion:
     Parameters
     ----------
     model : Model
-        Driven by its own inputs, not by a law of time.
+        Driven by its inputs, not by a law of time.
     motion : Motion
     """
 
@@ -78,18 +78,18 @@ class WholeMotion:
     @cached_property
     def dyads(self) -> tuple[Dyad, ...]:
         """The dyads with a transmission angle, one for each pin."""
-        found: dict[str, Dyad] = {}
+        dyads: dict[str, Dyad] = {}
         for dyad in self.model.motion_quantities.names.dyads:
-            found.setdefault(dyad.pin, dyad)
-        return tuple(found.values())
+            dyads.setdefault(dyad.pin, dyad)
+        return tuple(dyads.values())
 
-    def least_transmission(self, wanted: float) -> LeastAngle:
+    def least_transmission(self, least_wanted: float) -> LeastAngle:
         """See :meth:`MotionBounds.least_transmission`."""
-        if wanted not in self._least:
-            self._least[wanted] = self._least_transmission(wanted)
-        return self._least[wanted]
+        if least_wanted not in self._least:
+            self._least[least_wanted] = self._least_transmission(least_wanted)
+        return self._least[least_wanted]
 
-    def _least_transmission(self, wanted: float) -> LeastAngle:
+    def _least_transmission(self, least_wanted: float) -> LeastAngle:
         best, place, lowest = np.inf, np.nan, np.inf
 
         def decide(boxes: Boxes) -> BoolArray:
@@ -100,8 +100,8 @@ class WholeMotion:
             if seen[k] < best:
                 best, place = float(seen[k]), float(boxes.leading[k])
             decided = low >= best - _CLOSE
-            if best >= wanted - _WHOLE_MOTION_ROUNDING:
-                decided &= low >= wanted
+            if best >= least_wanted - _WHOLE_MOTION_ROUNDING:
+                decided &= low >= least_wanted
             lowest = min(lowest, float(low[decided].min(initial=np.inf)))
             return np.asarray(decided)
 
@@ -196,7 +196,7 @@ def _folded(angle: Array) -> Array:
 
 
 def _least_folded(angle: Array, reach: Array) -> Array:
-    """The least folded angle within ``reach`` of others; 0 where that is not known."""
+    """The least folded angle within ``reach`` of these angles; 0 where it is unknown."""
     first, last = angle - reach, angle + reach
     passed = ~(np.floor(first / np.pi) == np.floor(last / np.pi))
     return np.where(passed, 0.0, np.minimum(_folded(first), _folded(last)))
@@ -221,7 +221,7 @@ def _gaps(
     across_a = _dot(across, a) - np.abs(_dot(across, da)) * span - lost_a
     across_b = _dot(across, b) - np.abs(_dot(across, db)) * span - lost_b
     low = np.minimum(across_a, across_b)
-    # from the side's own line, eq. (194)
+    # from the line of the side, eq. (194)
     longest = np.sqrt(
         square + 2.0 * np.abs(_dot(line, turning)) * span + np.abs(turning) ** 2 * span**2
     )

@@ -86,7 +86,7 @@ def solve_with_bound(
 
 def _regular(matrix: Array) -> BoolArray:
     sizes = np.linalg.svd(matrix, compute_uv=False)
-    # an elimination may find no pivot in what is singular to its rounding
+    # an elimination may find no pivot in a matrix that is singular to rounding
     return np.asarray(sizes[..., -1] > _LOSS * UNIT_ROUNDOFF * sizes[..., 0])
 
 
@@ -169,7 +169,7 @@ class Candidates:
         A bound of the error of every pivot at every position [length]; infinite where no proof
         holds.
     miss : (D,)
-        How far the design passes the wanted positions, in their unit; 0 for exact ones.
+        How far the design misses the positions of the task, in their unit; 0 for exact ones.
     direction_a : (D,) complex, optional
         The unit vector of the line on which A slides, through ``fixed_a``; of an Oldham coupling
         that of the body's line through A and A0, seen along B - A. 0 where A turns about A0.
@@ -221,7 +221,7 @@ class Candidates:
 
     def driven_at_b(self) -> Candidates:
         """The same designs with the names of both sides exchanged."""
-        # what is seen along B - A is seen along A - B
+        # vectors in the frame of B - A, in the frame of A - B
         sign = -1.0 if self.kind is LoopKind.OLDHAM else 1.0
         return replace(
             self,
@@ -250,11 +250,11 @@ class Candidates:
     @classmethod
     def joined(cls, parts: Iterable[Candidates]) -> Candidates:
         """Designs of one kind in one container."""
-        found = list(parts)
+        every = list(parts)
         together = {
-            name: np.concatenate([getattr(part, name) for part in found]) for name in _ARRAYS
+            name: np.concatenate([getattr(part, name) for part in every]) for name in _ARRAYS
         }
-        return cls(kind=found[0].kind, **together)
+        return cls(kind=every[0].kind, **together)
 
 
 _ARRAYS = tuple(f.name for f in fields(Candidates) if f.name != "kind")

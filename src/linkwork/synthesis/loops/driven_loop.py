@@ -23,13 +23,13 @@ from linkwork.synthesis.loops.limits import (
 
 
 def pivots_at(
-    given: Candidates, drive: Drive, loops: DrivenLoops, place: Array
+    candidates: Candidates, drive: Drive, loops: DrivenLoops, place: Array
 ) -> tuple[ComplexArray, ComplexArray, ComplexArray]:
     """The pivots A and B and the guided point P on the branch of the first position.
 
     Parameters
     ----------
-    given, drive, loops
+    candidates, drive, loops
         D designs.
     place : (D, K)
         Inputs measured from the loops' origins.
@@ -39,11 +39,11 @@ def pivots_at(
     A, B, P : (D, K) complex
         NaN where the loop cannot be closed.
     """
-    if not given.kind.has_crank:
-        return guide_pivots_at(given, drive, loops, place)
-    if given.kind is LoopKind.INVERTED:
-        return _inverted_at(given, drive, loops, place)
-    other = given.driven_at_b() if drive is Drive.B0 else given
+    if not candidates.kind.has_crank:
+        return guide_pivots_at(candidates, drive, loops, place)
+    if candidates.kind is LoopKind.INVERTED:
+        return _inverted_at(candidates, drive, loops, place)
+    other = candidates.driven_at_b() if drive is Drive.B0 else candidates
     side = np.sign(loops.side[:, :1])
     first, second = other.moving_a[:, :1], other.moving_b[:, :1]
     length = np.abs(second - first)
@@ -56,7 +56,7 @@ def pivots_at(
             phase = np.exp(1j * (place + loops.origin[:, None]))
             fixed = other.fixed_a[:, None]
             a = fixed + np.abs(first - fixed) * phase
-            if given.kind is LoopKind.FOUR_BAR:
+            if candidates.kind is LoopKind.FOUR_BAR:
                 pivot = other.fixed_b[:, None]
                 b = a + _closed(pivot - a, length, np.abs(second - pivot), side)
             else:
@@ -69,12 +69,12 @@ def pivots_at(
 
 
 def _inverted_at(
-    given: Candidates, drive: Drive, loops: DrivenLoops, place: Array
+    candidates: Candidates, drive: Drive, loops: DrivenLoops, place: Array
 ) -> tuple[ComplexArray, ComplexArray, ComplexArray]:
     """The same of inverted slider-cranks."""
     side = np.sign(loops.side[:, :1])
-    first, block = given.moving_a[:, :1], given.fixed_b[:, None]
-    line, fixed = given.lines[:, :1], given.fixed_a[:, None]
+    first, block = candidates.moving_a[:, :1], candidates.fixed_b[:, None]
+    line, fixed = candidates.lines[:, :1], candidates.fixed_a[:, None]
     phase = np.exp(1j * (place + loops.origin[:, None]))
     with np.errstate(invalid="ignore"):
         if drive is Drive.A0:
@@ -87,8 +87,8 @@ def _inverted_at(
             across = loops.q(place)
             reach = side * np.sqrt(np.abs(first - fixed) ** 2 - across**2)
             a = fixed + (reach + 1j * across) * along
-    b = a + (given.moving_b[:, :1] - first) / line * along
-    p = a + (given.guided[:, :1] - first) / line * along
+    b = a + (candidates.moving_b[:, :1] - first) / line * along
+    p = a + (candidates.guided[:, :1] - first) / line * along
     return a, b, p
 
 
@@ -156,12 +156,14 @@ class Travel:
 
 def travel_of(
     loops: DrivenLoops,
-    wanted: Range | None,
+    driven_range: Range | None,
     ordered: bool,
     beyond: float = 0.0,
 ) -> Travel:
-    """The way through the positions; ``wanted``: by default from ``beyond`` the first to ``beyond``
-    the last position.
+    """How the loops pass the positions.
+
+    ``driven_range``: without one, from ``beyond`` before the first position to ``beyond`` after
+    the last.
     """
     free, split = loops.is_free, loops.is_split
     side, half = np.sign(loops.side), np.sign(loops.half)
@@ -169,12 +171,12 @@ def travel_of(
     circuit = _first_change(number)
     branch = np.where(circuit == NOWHERE, _first_change(side), NOWHERE)
     decided = _are_decided(loops, free, split)
-    place, in_order, order_decided = _places(loops, free)
+    place, in_order, order_decided = _order_of_positions(loops, free)
     if ordered:
         decided &= order_decided
     else:
         in_order = np.ones_like(in_order)
-    first, last, unreached = _driven_range(loops, place, free, wanted, beyond)
+    first, last, unreached = _driven_range(loops, place, free, driven_range, beyond)
     return Travel(
         place=place,
         first=first,
@@ -201,12 +203,12 @@ def _are_decided(loops: DrivenLoops, free: BoolArray, split: BoolArray) -> BoolA
     return np.asarray(limits & sides & (halves | ~split))
 
 
-def _places(loops: DrivenLoops, free: BoolArray) -> tuple[Array, BoolArray, BoolArray]:
+def _order_of_positions(loops: DrivenLoops, free: BoolArray) -> tuple[Array, BoolArray, BoolArray]:
     """Unwrapped inputs, whether they are in order, and whether that is certain."""
     place = loops.input - loops.origin[:, None]
     error = 4.0 * loops.input_error
     if loops.turns:
-        # a lower limit alone leaves the half turns around the origin, an upper one the others
+        # a lower limit alone leaves half turns around the origin, an upper one those around π
         around = np.where((loops.upper > 0), 0.0, -np.pi)[:, None]
         place = np.mod(place - around, FULL_TURN) + around
     steps = np.diff(place, axis=1)
@@ -238,7 +240,7 @@ def _driven_range(
     loops: DrivenLoops,
     place: Array,
     free: BoolArray,
-    wanted: Range | None,
+    requested: Range | None,
     beyond: float,
 ) -> tuple[Array, Array, IndexArray]:
     """The ends of the driven range, and the position that is not reached."""
@@ -246,16 +248,16 @@ def _driven_range(
     low, high = place.min(axis=1), place.max(axis=1)
     forward = place[:, -1] >= place[:, 0]
     needed = np.stack([low - beyond, high + beyond], axis=1)
-    if wanted is None:
+    if requested is None:
         leaves = ~free & (beyond > 0.0) & _leaves(loops, needed[:, 0], needed[:, 1])
         first, last = np.where(forward, needed.T, needed.T[::-1])
         return first, last, np.where(leaves, count, NOWHERE)
-    if wanted.turn:
+    if requested.turn:
         first = place[:, 0]
         last = first + np.where(forward, FULL_TURN, -FULL_TURN)
         return first, last, np.where(free & loops.turns, NOWHERE, count)
-    first = wanted.start - loops.origin
-    last = first + (wanted.stop - wanted.start)
+    first = requested.start - loops.origin
+    last = first + (requested.stop - requested.start)
     if loops.turns:
         # the whole turns that bring the range to the positions
         turns = np.round((needed.mean(axis=1) - 0.5 * (first + last)) / FULL_TURN) * FULL_TURN
@@ -312,26 +314,26 @@ def _passes(loops: DrivenLoops, begin: Array, end: Array, pole: float) -> BoolAr
 # one circuit, none two circuits that differ in their side.
 
 
-def driven_loops(given: Candidates, drive: Drive) -> DrivenLoops:
+def driven_loops(candidates: Candidates, drive: Drive) -> DrivenLoops:
     """The loops of designs with one driven link."""
-    if not given.kind.has_crank:
-        return guide_loops(given, drive)
-    if given.kind is LoopKind.FOUR_BAR:
-        return _four_bars(given if drive is Drive.A0 else given.driven_at_b())
-    if given.kind is LoopKind.INVERTED:
-        return _inverted(given) if drive is Drive.A0 else _driven_blocks(given)
-    return _slider_cranks(given) if drive is Drive.A0 else _driven_sliders(given)
+    if not candidates.kind.has_crank:
+        return guide_loops(candidates, drive)
+    if candidates.kind is LoopKind.FOUR_BAR:
+        return _four_bars(candidates if drive is Drive.A0 else candidates.driven_at_b())
+    if candidates.kind is LoopKind.INVERTED:
+        return _inverted(candidates) if drive is Drive.A0 else _driven_blocks(candidates)
+    return _slider_cranks(candidates) if drive is Drive.A0 else _driven_sliders(candidates)
 
 
-def _four_bars(given: Candidates) -> DrivenLoops:
-    crank = given.moving_a - given.fixed_a[:, None]
-    coupler = given.moving_b - given.moving_a
-    rocker = given.moving_b - given.fixed_b[:, None]
-    ground = given.fixed_b - given.fixed_a
+def _four_bars(candidates: Candidates) -> DrivenLoops:
+    crank = candidates.moving_a - candidates.fixed_a[:, None]
+    coupler = candidates.moving_b - candidates.moving_a
+    rocker = candidates.moving_b - candidates.fixed_b[:, None]
+    ground = candidates.fixed_b - candidates.fixed_a
     a, b, c = (np.abs(v[:, 0]) for v in (crank, rocker, coupler))
     g = np.abs(ground)
     size = np.maximum(np.maximum(a, b), np.maximum(c, g))
-    doubt = doubt_of(given, size)
+    doubt = doubt_of(candidates, size)
     toward = phase_of(ground)
     with np.errstate(all="ignore"):
         cosine = (b**2 + c**2) / (2.0 * b * c), -1.0 / (2.0 * b * c)
@@ -356,14 +358,14 @@ def _four_bars(given: Candidates) -> DrivenLoops:
     )
 
 
-def _slider_cranks(given: Candidates) -> DrivenLoops:
-    crank = given.moving_a - given.fixed_a[:, None]
-    rod = given.moving_b - given.moving_a
-    normal = 1j * given.direction
+def _slider_cranks(candidates: Candidates) -> DrivenLoops:
+    crank = candidates.moving_a - candidates.fixed_a[:, None]
+    rod = candidates.moving_b - candidates.moving_a
+    normal = 1j * candidates.direction
     a, c = np.abs(crank[:, 0]), np.abs(rod[:, 0])
-    height = dot(normal, given.fixed_a - given.fixed_b)
-    size = np.maximum(np.maximum(a, c), np.abs(given.fixed_a - given.fixed_b))
-    doubt = doubt_of(given, size)
+    height = dot(normal, candidates.fixed_a - candidates.fixed_b)
+    size = np.maximum(np.maximum(a, c), np.abs(candidates.fixed_a - candidates.fixed_b))
+    doubt = doubt_of(candidates, size)
     toward = phase_of(normal)
     with np.errstate(all="ignore"):
         cosine = np.zeros_like(c), 1.0 / c
@@ -379,7 +381,7 @@ def _slider_cranks(given: Candidates) -> DrivenLoops:
         upper=height + a - c,
         lower=a - height - c,
         limit_error=4.0 * doubt,
-        side=dot(rod, given.direction[:, None]),
+        side=dot(rod, candidates.direction[:, None]),
         half=cross(normal[:, None], crank),
         sign_error=PRODUCT * doubt,
         q_error=4.0 * doubt,
@@ -388,17 +390,17 @@ def _slider_cranks(given: Candidates) -> DrivenLoops:
     )
 
 
-def _driven_sliders(given: Candidates) -> DrivenLoops:
-    crank = given.moving_a - given.fixed_a[:, None]
-    rod = given.moving_a - given.moving_b
+def _driven_sliders(loops: Candidates) -> DrivenLoops:
+    crank = loops.moving_a - loops.fixed_a[:, None]
+    rod = loops.moving_a - loops.moving_b
     a, c = np.abs(crank[:, 0]), np.abs(rod[:, 0])
-    to_crank = given.fixed_a - given.fixed_b
-    height = dot(1j * given.direction, to_crank)
-    size = np.maximum(np.maximum(a, c), np.abs(given.moving_b - given.fixed_b[:, None]).max(axis=1))
+    to_crank = loops.fixed_a - loops.fixed_b
+    height = dot(1j * loops.direction, to_crank)
+    size = np.maximum(np.maximum(a, c), np.abs(loops.moving_b - loops.fixed_b[:, None]).max(axis=1))
     size = np.maximum(size, np.abs(to_crank))
-    doubt = doubt_of(given, size)
-    foot = dot(given.direction, to_crank)
-    s = dot(given.direction[:, None], given.moving_b - given.fixed_b[:, None])
+    doubt = doubt_of(loops, size)
+    foot = dot(loops.direction, to_crank)
+    s = dot(loops.direction[:, None], loops.moving_b - loops.fixed_b[:, None])
     with np.errstate(all="ignore"):
         cosine = (a**2 + c**2) / (2.0 * a * c), -1.0 / (2.0 * a * c)
     return DrivenLoops(
@@ -423,14 +425,14 @@ def _driven_sliders(given: Candidates) -> DrivenLoops:
     )
 
 
-def _inverted(given: Candidates) -> DrivenLoops:
-    crank = given.moving_a - given.fixed_a[:, None]
-    ground = given.fixed_b - given.fixed_a
-    to_block, lines = given.fixed_b[:, None] - given.moving_a, given.lines
+def _inverted(candidates: Candidates) -> DrivenLoops:
+    crank = candidates.moving_a - candidates.fixed_a[:, None]
+    ground = candidates.fixed_b - candidates.fixed_a
+    to_block, lines = candidates.fixed_b[:, None] - candidates.moving_a, candidates.lines
     a, g = np.abs(crank[:, 0]), np.abs(ground)
     h = np.abs(cross(lines[:, 0], to_block[:, 0]))
     size = np.maximum(np.maximum(a, g), np.abs(to_block).max(axis=1))
-    doubt = 2.0 * doubt_of(given, size)
+    doubt = 2.0 * doubt_of(candidates, size)
     return DrivenLoops(
         turns=True,
         input=phase_of(crank),
@@ -454,15 +456,15 @@ def _inverted(given: Candidates) -> DrivenLoops:
     )
 
 
-def _driven_blocks(given: Candidates) -> DrivenLoops:
-    crank = given.moving_a - given.fixed_a[:, None]
-    ground = given.fixed_a - given.fixed_b
-    to_block, lines = given.fixed_b[:, None] - given.moving_a, given.lines
+def _driven_blocks(candidates: Candidates) -> DrivenLoops:
+    crank = candidates.moving_a - candidates.fixed_a[:, None]
+    ground = candidates.fixed_a - candidates.fixed_b
+    to_block, lines = candidates.fixed_b[:, None] - candidates.moving_a, candidates.lines
     a, g = np.abs(crank[:, 0]), np.abs(ground)
     # A is h to the right of the line, A0 is g cos(φ - φ0) to the right of its parallel through B0
     h = cross(lines[:, 0], to_block[:, 0])
     size = np.maximum(np.maximum(a, g), np.abs(to_block).max(axis=1))
-    doubt = 2.0 * doubt_of(given, size)
+    doubt = 2.0 * doubt_of(candidates, size)
     toward = phase_of(ground) + 0.5 * np.pi
     with np.errstate(all="ignore"):
         cosine = np.zeros_like(a), 1.0 / a

@@ -1,4 +1,4 @@
-"""The limits of one loop with an input: what verdicts need of it, with bounds of all errors."""
+"""The limits of one loop with an input, as verdicts need them, with bounds of all errors."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from linkwork.synthesis.loops.candidates import Candidates, Drive, LoopKind
 
 # roundings of a vector between two points, its length, and sums of four lengths
 _VECTOR = 16.0 * UNIT_ROUNDOFF
-#: Of a product of two vectors, with errors ε: |v| ε + |w| ε + ε² and its own roundings.
+#: Of a product of two vectors, with errors ε: |v| ε + |w| ε + ε² and the rounding of the product.
 PRODUCT = 2.25
 
 
@@ -49,7 +49,7 @@ class DrivenLoops:
     offset : (D,)
         h: for a line that is driven at A the cosine is h/√q; else 0.
     squared : bool
-        Whether the cosine's square is given.
+        Whether the cosine is squared.
     """
 
     turns: bool
@@ -136,10 +136,10 @@ def dot(v: ComplexArray, w: ComplexArray) -> Array:
     return np.asarray(v.real * w.real + v.imag * w.imag)
 
 
-def doubt_of(given: Candidates, size: Array) -> Array:
+def doubt_of(candidates: Candidates, size: Array) -> Array:
     """A bound of the errors of vectors between pivots."""
-    far = np.maximum(np.abs(given.fixed_a), np.abs(given.moving_a).max(axis=1))
-    return np.asarray(2.0 * given.error + _VECTOR * (size + far))
+    far = np.maximum(np.abs(candidates.fixed_a), np.abs(candidates.moving_a).max(axis=1))
+    return np.asarray(2.0 * candidates.error + _VECTOR * (size + far))
 
 
 def angle_error(length: Array, doubt: Array) -> Array:
@@ -172,25 +172,25 @@ def phase_of(v: ComplexArray) -> Array:
 # drives A to infinity: both limits are reached, and leave two circuits.
 
 
-def guide_loops(given: Candidates, drive: Drive) -> DrivenLoops:
+def guide_loops(candidates: Candidates, drive: Drive) -> DrivenLoops:
     """The loops of designs without a crank, with one driven link."""
-    if given.kind is LoopKind.DOUBLE_SLIDER:
-        return _double_sliders(given if drive is Drive.SLIDER_A else given.driven_at_b())
-    if given.kind is LoopKind.OLDHAM:
-        return _couplings(given if drive is Drive.A0 else given.driven_at_b())
-    return _slides(given) if drive is Drive.SLIDER_A else _driven_blocks(given)
+    if candidates.kind is LoopKind.DOUBLE_SLIDER:
+        return _double_sliders(candidates if drive is Drive.SLIDER_A else candidates.driven_at_b())
+    if candidates.kind is LoopKind.OLDHAM:
+        return _couplings(candidates if drive is Drive.A0 else candidates.driven_at_b())
+    return _slides(candidates) if drive is Drive.SLIDER_A else _driven_blocks(candidates)
 
 
-def _double_sliders(given: Candidates) -> DrivenLoops:
-    rod, line = given.moving_b - given.moving_a, given.direction
-    c, sine = np.abs(rod[:, 0]), np.abs(cross(given.direction_a, line))
-    s = dot(given.direction_a[:, None], given.moving_a - given.fixed_a[:, None])
-    origin = _crossing(given)
-    size = np.maximum(c, np.abs(given.moving_b - given.fixed_b[:, None]).max(axis=1))
-    size = np.maximum(size, np.abs(given.fixed_b - given.fixed_a))
-    doubt = doubt_of(given, size)
+def _double_sliders(candidates: Candidates) -> DrivenLoops:
+    rod, line = candidates.moving_b - candidates.moving_a, candidates.direction
+    c, sine = np.abs(rod[:, 0]), np.abs(cross(candidates.direction_a, line))
+    s = dot(candidates.direction_a[:, None], candidates.moving_a - candidates.fixed_a[:, None])
+    origin = _crossing(candidates)
+    size = np.maximum(c, np.abs(candidates.moving_b - candidates.fixed_b[:, None]).max(axis=1))
+    size = np.maximum(size, np.abs(candidates.fixed_b - candidates.fixed_a))
+    doubt = doubt_of(candidates, size)
     with np.errstate(all="ignore"):
-        # of the crossing of two lines, and of what is measured from it
+        # of the crossing of two lines, and of distances from it
         place_error = 4.0 * doubt / sine
         farthest = np.maximum(np.abs(s - origin[:, None]).max(axis=1), c / sine)
         high = (c / sine) ** 2
@@ -217,14 +217,14 @@ def _double_sliders(given: Candidates) -> DrivenLoops:
     )
 
 
-def _slides(given: Candidates) -> DrivenLoops:
-    to_block, lines = given.fixed_b[:, None] - given.moving_a, given.lines
-    from_line = given.fixed_b - given.fixed_a
-    height, origin = cross(given.direction_a, from_line), dot(given.direction_a, from_line)
-    s = dot(given.direction_a[:, None], given.moving_a - given.fixed_a[:, None])
+def _slides(loops: Candidates) -> DrivenLoops:
+    to_block, lines = loops.fixed_b[:, None] - loops.moving_a, loops.lines
+    from_line = loops.fixed_b - loops.fixed_a
+    height, origin = (cross(loops.direction_a, from_line), dot(loops.direction_a, from_line))
+    s = dot(loops.direction_a[:, None], loops.moving_a - loops.fixed_a[:, None])
     h = np.abs(cross(lines[:, 0], to_block[:, 0]))
     size = np.maximum(np.abs(from_line), np.abs(to_block).max(axis=1))
-    doubt = 2.0 * doubt_of(given, size)
+    doubt = 2.0 * doubt_of(loops, size)
     none = np.zeros_like(h)
     return DrivenLoops(
         turns=False,
@@ -249,16 +249,16 @@ def _slides(given: Candidates) -> DrivenLoops:
     )
 
 
-def _driven_blocks(given: Candidates) -> DrivenLoops:
-    to_block, lines = given.fixed_b[:, None] - given.moving_a, given.lines
+def _driven_blocks(candidates: Candidates) -> DrivenLoops:
+    to_block, lines = candidates.fixed_b[:, None] - candidates.moving_a, candidates.lines
     size = np.abs(to_block).max(axis=1)
-    doubt = 2.0 * doubt_of(given, size)
+    doubt = 2.0 * doubt_of(candidates, size)
     none, one = np.zeros_like(size), np.ones_like(size)
     return DrivenLoops(
         turns=True,
         input=phase_of(lines),
         input_error=angle_error(size, doubt),
-        origin=phase_of(given.direction_a),
+        origin=phase_of(candidates.direction_a),
         q0=none,
         q1=one,
         low=-one,
@@ -267,7 +267,7 @@ def _driven_blocks(given: Candidates) -> DrivenLoops:
         lower=size,
         limit_error=4.0 * doubt,
         side=np.broadcast_to(size[:, None], lines.shape),
-        half=size[:, None] * cross(given.direction_a[:, None], lines),
+        half=size[:, None] * cross(candidates.direction_a[:, None], lines),
         sign_error=PRODUCT * doubt,
         q_error=4.0 * angle_error(size, doubt),
         cosine=(none, one),
@@ -275,11 +275,11 @@ def _driven_blocks(given: Candidates) -> DrivenLoops:
     )
 
 
-def _couplings(given: Candidates) -> DrivenLoops:
-    lines, count = given.lines_a, len(given)
-    ground = np.abs(given.fixed_b - given.fixed_a)
-    doubt = 2.0 * doubt_of(given, ground)
-    arm = np.abs(given.moving_a - given.fixed_a[:, None]).max(axis=1) + ground
+def _couplings(candidates: Candidates) -> DrivenLoops:
+    lines, count = candidates.lines_a, len(candidates)
+    ground = np.abs(candidates.fixed_b - candidates.fixed_a)
+    doubt = 2.0 * doubt_of(candidates, ground)
+    arm = np.abs(candidates.moving_a - candidates.fixed_a[:, None]).max(axis=1) + ground
     none, unlimited = np.zeros(count), np.full(count, np.inf)
     return DrivenLoops(
         turns=True,
@@ -298,44 +298,44 @@ def _couplings(given: Candidates) -> DrivenLoops:
         sign_error=none,
         q_error=none,
         # both blocks turn alike; the force of one acts across its line
-        cosine=(dot(given.direction_a, given.direction), none),
+        cosine=(dot(candidates.direction_a, candidates.direction), none),
         offset=none,
     )
 
 
-def _crossing(given: Candidates) -> Array:
+def _crossing(loops: Candidates) -> Array:
     """The place of the crossing of both fixed lines along that of A, (D,)."""
-    away = given.fixed_b - given.fixed_a
+    away = loops.fixed_b - loops.fixed_a
     with np.errstate(all="ignore"):
-        place = cross(away, given.direction) / cross(given.direction_a, given.direction)
+        place = cross(away, loops.direction) / cross(loops.direction_a, loops.direction)
     return np.asarray(place)
 
 
 def guide_pivots_at(
-    given: Candidates, drive: Drive, loops: DrivenLoops, place: Array
+    candidates: Candidates, drive: Drive, loops: DrivenLoops, place: Array
 ) -> tuple[ComplexArray, ComplexArray, ComplexArray]:
     """A, B and P at places (D, K), as :func:`~linkwork.synthesis.loops.driven_loop.pivots_at`
     computes them.
     """
-    swapped = drive is Drive.SLIDER or (given.kind is LoopKind.OLDHAM and drive is Drive.B0)
-    own = given.driven_at_b() if swapped else given
-    first, second = own.moving_a[:, :1], own.moving_b[:, :1]
-    fixed, block = own.fixed_a[:, None], own.fixed_b[:, None]
+    swapped = drive is Drive.SLIDER or (candidates.kind is LoopKind.OLDHAM and drive is Drive.B0)
+    driven = candidates.driven_at_b() if swapped else candidates
+    first, second = driven.moving_a[:, :1], driven.moving_b[:, :1]
+    fixed, block = driven.fixed_a[:, None], driven.fixed_b[:, None]
     value, side = place + loops.origin[:, None], np.sign(loops.side[:, :1])
-    line_a = own.direction_a[:, None]
+    line_a = driven.direction_a[:, None]
     with np.errstate(all="ignore"):
-        if own.kind is LoopKind.OLDHAM:
-            turn = np.exp(1j * value) / own.lines_a[:, :1]
-            start = meeting(fixed, own.lines_a[:, :1], block, own.lines[:, :1])
-            centre = meeting(fixed, own.lines_a[:, :1] * turn, block, own.lines[:, :1] * turn)
+        if driven.kind is LoopKind.OLDHAM:
+            turn = np.exp(1j * value) / driven.lines_a[:, :1]
+            start = meeting(fixed, driven.lines_a[:, :1], block, driven.lines[:, :1])
+            centre = meeting(fixed, driven.lines_a[:, :1] * turn, block, driven.lines[:, :1] * turn)
             a = centre + (first - start) * turn
-        elif own.kind is LoopKind.DOUBLE_SLIDER:
-            a, along = fixed + value * line_a, own.direction[:, None]
+        elif driven.kind is LoopKind.DOUBLE_SLIDER:
+            a, along = fixed + value * line_a, driven.direction[:, None]
             height, length = dot(1j * along, a - block), np.abs(second - first)
             b = a + (side * np.sqrt(length**2 - height**2) - 1j * height) * along
             turn = (b - a) / (second - first)
         else:
-            line = own.lines[:, :1]
+            line = driven.lines[:, :1]
             h = cross(line, block - first)
             if drive is Drive.SLIDER_A:
                 a = fixed + value * line_a
@@ -347,7 +347,7 @@ def guide_pivots_at(
                 way = (cross(along, block - fixed) - h) / cross(along, line_a)
                 a, turn = fixed + way * line_a, along / line
         b = a + (second - first) * turn
-        p = a + (own.guided[:, :1] - first) * turn
+        p = a + (driven.guided[:, :1] - first) * turn
     return (b, a, p) if swapped else (a, b, p)
 
 
@@ -359,23 +359,23 @@ def meeting(
 
 
 def guide_speeds(
-    given: Candidates, drive: Drive, loops: DrivenLoops, first: Array, last: Array
+    candidates: Candidates, drive: Drive, loops: DrivenLoops, first: Array, last: Array
 ) -> tuple[Array, Array]:
     """Bounds of the speed of A, and of the turning of the body, per unit of the input, (D,)."""
-    sine, one = np.sin(loops.least_transmission(first, last)), np.ones(len(given))
-    ground = np.abs(given.fixed_b - given.fixed_a)
-    if given.kind is LoopKind.OLDHAM:
+    sine, one = np.sin(loops.least_transmission(first, last)), np.ones(len(candidates))
+    ground = np.abs(candidates.fixed_b - candidates.fixed_a)
+    if candidates.kind is LoopKind.OLDHAM:
         # the crossing of the body's lines runs around a circle through A0 and B0
         centre = meeting(
-            given.fixed_a, given.lines_a[:, 0], given.fixed_b, given.lines[:, 0]
+            candidates.fixed_a, candidates.lines_a[:, 0], candidates.fixed_b, candidates.lines[:, 0]
         )  # fmt: skip
-        return ground / sine + np.abs(given.moving_a[:, 0] - centre), one
-    if given.kind is LoopKind.DOUBLE_SLIDER:
+        return ground / sine + np.abs(candidates.moving_a[:, 0] - centre), one
+    if candidates.kind is LoopKind.DOUBLE_SLIDER:
         # either end moves along its line by at most 1 / sin μ, and across the other by at most 1
-        return 1.0 / sine, 1.0 / (np.abs(given.moving_b - given.moving_a)[:, 0] * sine)
-    h = np.abs(cross(given.lines[:, 0], given.fixed_b - given.moving_a[:, 0]))
+        return 1.0 / sine, 1.0 / (np.abs(candidates.moving_b - candidates.moving_a)[:, 0] * sine)
+    h = np.abs(cross(candidates.lines[:, 0], candidates.fixed_b - candidates.moving_a[:, 0]))
     if drive is Drive.SLIDER_A:
         nearest = np.sqrt(np.maximum(loops.extremes(first, last).min(axis=1) - loops.q_error, 0.0))
         return one, 1.0 / (nearest * sine)
-    height = np.abs(cross(given.direction_a, given.fixed_b - given.fixed_a))
+    height = np.abs(cross(candidates.direction_a, candidates.fixed_b - candidates.fixed_a))
     return (height + h) / sine**2, one

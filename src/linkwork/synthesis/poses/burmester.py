@@ -27,7 +27,7 @@ from linkwork.synthesis.poses.dyads import NormalPoses, Refusal, solve_on_lines
 
 _SAMPLES = 48  # directions over all arcs
 _THROUGH = np.exp(0.25j * np.pi * np.arange(4))  # directions of lines through a given pivot
-_OWN_POLE = 1e-7  # of the size of the task: the pencil's own pole
+_AT_POLE = 1e-7  # of the size of the task: a pivot this near is the pole of the pencil
 #: Turns from pose to pose below this leave no finite pole.
 _SMALLEST_TURN = 1e-6
 # roundings of the discriminant's coefficients: products of four, sums of a few
@@ -161,7 +161,7 @@ def _roots(coefficients: ComplexArray, error: float) -> tuple[ComplexArray, bool
     polynomial = np.array([second, first, 2.0 * zeroth.real, np.conj(first), np.conj(second)])
     w = np.asarray(np.roots(polynomial), dtype=np.complex128)
     if len(w) < 4:
-        return w, False, np.abs(np.abs(w) - 1.0) < _OWN_POLE
+        return w, False, np.abs(np.abs(w) - 1.0) < _AT_POLE
     powers = np.abs(w)[:, None] ** np.arange(4, -1, -1)
     loss = 2.0 * error * powers.sum(axis=1) + 16.0 * UNIT_ROUNDOFF * (powers @ np.abs(polynomial))
     others = np.abs(w[:, None] - w[None]) + np.eye(4)
@@ -169,7 +169,7 @@ def _roots(coefficients: ComplexArray, error: float) -> tuple[ComplexArray, bool
     with np.errstate(all="ignore"):
         radius = 4.0 * (np.abs(np.polyval(polynomial, w)) + loss) / (divisor * others.prod(axis=1))
     if divisor <= 0 or not np.isfinite(radius).all():
-        return w, False, np.abs(np.abs(w) - 1.0) < _OWN_POLE
+        return w, False, np.abs(np.abs(w) - 1.0) < _AT_POLE
     apart = others > 2.0 * (radius[:, None] + radius[None])
     np.fill_diagonal(apart, True)
     away = np.abs(np.abs(w) - 1.0) > 1.1 * radius
@@ -200,12 +200,12 @@ def sampled_dyads(points: ComplexArray, angles: Array, samples: int = _SAMPLES) 
     lines = np.stack([np.full(many, vertex), np.exp(1j * directions)], axis=1)
     d, theta = np.tile(points, (many, 1)), np.tile(angles, (many, 1))
     solved = solve_on_lines(d, theta, lines)
-    found = DyadSet.of_solutions(solved, PoseSet(points=d, turns=np.exp(1j * theta)))
-    own = np.abs(found.fixed - vertex) > _OWN_POLE * float(np.abs(points - points.mean()).max())
-    pinned = found.take((found.kind == 0) & own)
+    dyads = DyadSet.of_solutions(solved, PoseSet(points=d, turns=np.exp(1j * theta)))
+    away = np.abs(dyads.fixed - vertex) > _AT_POLE * float(np.abs(points - points.mean()).max())
+    pinned = dyads.take((dyads.kind == 0) & away)
     # every line finds the same RP dyad
-    sliding = np.flatnonzero(found.kind == 2)[:1]
-    return DyadSet.joined([pinned, found.take(sliding)]).of_one_task()
+    sliding = np.flatnonzero(dyads.kind == 2)[:1]
+    return DyadSet.joined([pinned, dyads.take(sliding)]).of_one_task()
 
 
 def dyads_with_pivots(
@@ -215,10 +215,10 @@ def dyads_with_pivots(
 
     On a line through a given pivot the four poses determine the dyad: the square system is that of
     :func:`solve_on_lines`, with its proof. Of several lines the nearest proved pivot counts, which
-    differs from the given one by as much as that is off the curve. A pivot without a dyad within
-    ``reach`` has none here.
+    differs from the given one by as much as that is off the curve. A given pivot without a dyad
+    within ``reach`` is left out.
     """
-    found = []
+    nearest = []
     for pivot in pivots:
         lines = np.stack([np.full(len(_THROUGH), pivot), _THROUGH], axis=1)
         d, theta = np.tile(points, (len(lines), 1)), np.tile(angles, (len(lines), 1))
@@ -227,8 +227,8 @@ def dyads_with_pivots(
         away = np.abs(dyads.fixed - pivot)
         near = np.flatnonzero((dyads.kind == 0) & (away < reach))
         order = np.lexsort([away[near], dyads.refusal[near] != Refusal.NONE.code])
-        found.append(dyads.take(near[order[:1]]))
-    return DyadSet.joined(found).of_one_task()
+        nearest.append(dyads.take(near[order[:1]]))
+    return DyadSet.joined(nearest).of_one_task()
 
 
 def sliding_dyad(points: ComplexArray, angles: Array) -> DyadSet:

@@ -70,10 +70,10 @@ class DyadSet:
     @classmethod
     def joined(cls, parts: Iterable[DyadSet]) -> DyadSet:
         """The dyads of several sets, in their order."""
-        found = list(parts)
+        every = list(parts)
         return cls(
             **{
-                f.name: np.concatenate([getattr(part, f.name) for part in found])
+                f.name: np.concatenate([getattr(part, f.name) for part in every])
                 for f in fields(cls)
             }
         )
@@ -83,12 +83,12 @@ class DyadSet:
         return replace(self, task=np.zeros(len(self), dtype=np.intp))
 
     @classmethod
-    def of_solutions(cls, found: Dyads, poses: PoseSet) -> DyadSet:
+    def of_solutions(cls, solutions: Dyads, poses: PoseSet) -> DyadSet:
         """The real solutions of five-pose tasks."""
-        task, column = np.nonzero(found.is_real)
-        x = found.x[task, column].real
-        size, centre = found.poses.size[task], found.poses.centre[task]
-        kind = found.kinds[task, column]
+        task, column = np.nonzero(solutions.is_real)
+        x = solutions.x[task, column].real
+        size, centre = solutions.poses.size[task], solutions.poses.centre[task]
+        kind = solutions.kinds[task, column]
         a, g, b = x[:, 1] + 1j * x[:, 2], x[:, 3] + 1j * x[:, 4], x[:, 5] + 1j * x[:, 6]
         normal_of = np.where(kind == 1, g, a)
         length = np.abs(normal_of)
@@ -97,7 +97,7 @@ class DyadSet:
             moving = np.choose(kind, [a / x[:, 0], b / g.conj(), line])
             fixed = np.choose(kind, [g / x[:, 0], line, (b / a).conj()])
             # an error e of every coordinate, complex ones √2 e, in a quotient
-            error = np.sqrt(2.0) * found.error[task, column]
+            error = np.sqrt(2.0) * solutions.error[task, column]
             divisor = np.where(kind == 0, np.abs(x[:, 0]), length) - error
             far = np.maximum(np.abs(moving), np.abs(fixed))
             error = np.where(divisor > 0, error * (1.0 + far) / divisor, np.inf)
@@ -108,7 +108,7 @@ class DyadSet:
             fixed=centre + fixed * size,
             normal=np.where(kind > 0, normal_of / length, 0.0),
             error=error * size,
-            refusal=found.refusal[task, column],
+            refusal=solutions.refusal[task, column],
         )
         return made.take(np.isfinite(moving) & np.isfinite(fixed)).with_misses(poses)
 
@@ -168,24 +168,24 @@ def pair_dyads(dyads: DyadSet, poses: PoseSet, leading: int = 0) -> list[Candida
     every pair, as its crank.
     """
     cranks = dyads.take(dyads.kind == 0)
-    found = []
+    pairs = []
     first, second = _pairs(cranks.task, cranks.task)
     later = (first < second) & (first < (leading or len(cranks)))
     if leading:
         later &= second >= leading
     later &= _differ(cranks.moving, first, second) & _differ(cranks.fixed, first, second)
     if later.any():
-        found.append(_made(cranks.take(first[later]), cranks.take(second[later]), poses))
+        pairs.append(_made(cranks.take(first[later]), cranks.take(second[later]), poses))
     # a block at the crank's own fixed pivot, or a slider at its moving pivot, does not move
     for kind, pivots in ((1, "moving"), (2, "fixed")):
         guided = dyads.take(dyads.kind == kind)
         first, second = _pairs(cranks.task, guided.task)
-        own, other = getattr(cranks, pivots)[first], getattr(guided, pivots)[second]
+        pivot, other = getattr(cranks, pivots)[first], getattr(guided, pivots)[second]
         led = first < (leading or len(cranks))
-        led &= np.abs(own - other) > _ONE_PIVOT * np.abs(own)
+        led &= np.abs(pivot - other) > _ONE_PIVOT * np.abs(pivot)
         if led.any():
-            found.append(_made(cranks.take(first[led]), guided.take(second[led]), poses))
-    return found
+            pairs.append(_made(cranks.take(first[led]), guided.take(second[led]), poses))
+    return pairs
 
 
 def pair_guides(dyads: DyadSet, poses: PoseSet) -> tuple[list[Candidates], int]:
@@ -196,11 +196,11 @@ def pair_guides(dyads: DyadSet, poses: PoseSet) -> tuple[list[Candidates], int]:
     """
     guides = []
     for kind in (1, 2):
-        own = np.flatnonzero(dyads.kind == kind)
-        if len(np.unique(dyads.task)) <= 1 and len(own) > _MOST_GUIDED:
-            own = own[np.linspace(0, len(own) - 1, _MOST_GUIDED).astype(int)]
-        guides.append(dyads.take(own))
-    found, immobile = [], 0
+        of_kind = np.flatnonzero(dyads.kind == kind)
+        if len(np.unique(dyads.task)) <= 1 and len(of_kind) > _MOST_GUIDED:
+            of_kind = of_kind[np.linspace(0, len(of_kind) - 1, _MOST_GUIDED).astype(int)]
+        guides.append(dyads.take(of_kind))
+    pairs, immobile = [], 0
     for one, other in ((0, 0), (0, 1), (1, 1)):
         first, second = _pairs(guides[one].task, guides[other].task)
         if one == other:
@@ -212,8 +212,8 @@ def pair_guides(dyads: DyadSet, poses: PoseSet) -> tuple[list[Candidates], int]:
             moves &= _differ(getattr(guides[one], ("moving", "fixed")[one]), first, second)
         immobile += int((~moves).sum())
         if moves.any():
-            found.append(_made(left.take(moves), right.take(moves), poses))
-    return found, immobile
+            pairs.append(_made(left.take(moves), right.take(moves), poses))
+    return pairs, immobile
 
 
 def _differ(pivots: ComplexArray, first: IndexArray, second: IndexArray) -> BoolArray:
@@ -269,9 +269,9 @@ def _couplings(first: DyadSet, second: DyadSet, poses: PoseSet) -> Candidates:
     sine = cross(n, m)
     centre = (dot(n, first.moving) * (-1j * m) + dot(m, second.moving) * (1j * n)) / sine
     ends, lines = [], []
-    for own in (first, second):
-        along = -1j * own.normal
-        reach = dot(along[:, None], (own.fixed[:, None] - d) / e - centre[:, None])
+    for dyads in (first, second):
+        along = -1j * dyads.normal
+        reach = dot(along[:, None], (dyads.fixed[:, None] - d) / e - centre[:, None])
         reach = np.take_along_axis(reach, np.abs(reach).argmax(axis=1)[:, None], axis=1)[:, 0]
         ends.append(centre + reach * along)
         lines.append(along * np.sign(reach))

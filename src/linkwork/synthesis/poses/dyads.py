@@ -161,7 +161,7 @@ class NormalPoses:
     points, turns : (N, K) complex
         d and e^{iθ}; K poses.
     centre : (N,) complex
-        The mean of the points that were given [length].
+        The mean of the points of the poses [length].
     size : (N,)
         The largest distance of a point from it [length].
     """
@@ -177,7 +177,7 @@ class NormalPoses:
         centre = points.mean(axis=1)
         shifted = points - centre[:, None]
         size = np.abs(shifted).max(axis=1)
-        # bodies that only turn about their point have no size of their own
+        # bodies that only turn about their point have no size
         size = np.where(size > 0, size, 1.0)
         return cls(
             points=shifted / size[:, None], turns=np.exp(1j * angles), centre=centre, size=size
@@ -270,7 +270,7 @@ class DyadProofs:
     complete: BoolArray
 
     def with_better(self, index: IndexArray, other: DyadProofs) -> DyadProofs:
-        """With the solutions of another attempt where it proved more of them."""
+        """The dyads, with the solutions of another attempt where it proved more."""
         better = other.proved.sum(axis=1) > self.proved[index].sum(axis=1)
         changes = {}
         for name in ("x", "is_real", "proved", "error", "condition", "complete"):

@@ -65,7 +65,7 @@ class Design:
     @classmethod
     def of(
         cls,
-        given: Candidates,
+        candidates: Candidates,
         k: int,
         drive: Drive,
         inputs: Array,
@@ -79,35 +79,35 @@ class Design:
         links where a length is negative, or the displacement of a slider [rad or length].
         """
         points = {
-            "A0": given.fixed_a[k],
-            "B0": given.fixed_b[k],
-            "A": given.moving_a[k, 0],
-            "B": given.moving_b[k, 0],
-            "P": given.guided[k, 0],
+            "A0": candidates.fixed_a[k],
+            "B0": candidates.fixed_b[k],
+            "A": candidates.moving_a[k, 0],
+            "B": candidates.moving_b[k, 0],
+            "P": candidates.guided[k, 0],
         }
         backward = []
         if zero is not None:
             sides = (Drive.A0, "A", "A0", zero[0]), (Drive.B0, "B", "B0", zero[1])
-            pinned = sides if given.kind is LoopKind.FOUR_BAR else sides[:1]
+            pinned = sides if candidates.kind is LoopKind.FOUR_BAR else sides[:1]
             for side, moving, fixed, angle in pinned:
                 if ((points[moving] - points[fixed]) * np.exp(-1j * angle)).real < 0:
                     backward.append(side)
         guides = (
-            ("B0", "S", "T", given.direction[k], given.moving_b[k]),
-            ("A0", "U", "V", given.direction_a[k], given.moving_a[k]),
+            ("B0", "S", "T", candidates.direction[k], candidates.moving_b[k]),
+            ("A0", "U", "V", candidates.direction_a[k], candidates.moving_a[k]),
         )
         for name, start, end, direction, moving in guides:
-            if name not in given.kind.pivots:
+            if name not in candidates.kind.pivots:
                 line = points.pop(name)
                 along = dot(direction, moving - line)
                 reach = max(np.abs(along).max(), abs(points["B"] - points["A"]))
                 points |= {start: line, end: line + reach * direction}
-        if given.kind is LoopKind.OLDHAM:
-            own = (points["A0"], given.lines_a[k, 0], points["B0"], given.lines[k, 0])
-            points["K"] = meeting(*map(np.asarray, own))
-        elif given.kind.body_line:
+        if candidates.kind is LoopKind.OLDHAM:
+            axes = (points["A0"], candidates.lines_a[k, 0], points["B0"], candidates.lines[k, 0])
+            points["K"] = meeting(*map(np.asarray, axes))
+        elif candidates.kind.body_line:
             # the foot of A on the line of the coupler, if A is not on it
-            line = given.lines[k, 0]
+            line = candidates.lines[k, 0]
             away = cross(line, points["B"] - points["A"])
             if abs(away) > _ON_LINE * abs(points["B"] - points["A"]):
                 points["C"] = points["A"] + 1j * away * line
@@ -120,7 +120,7 @@ class Design:
             shift -= FULL_TURN * turns
             inputs, ends = inputs + shift, ends + shift
         return cls(
-            kind=given.kind,
+            kind=candidates.kind,
             drive=drive,
             points={name: complex(point) for name, point in points.items()},
             inputs=tuple(inputs.tolist()),
@@ -139,7 +139,7 @@ def linkage_of(design: Design, task: Task, name: str, output: str = "") -> Linka
     """
     if not design.kind.has_crank:
         return _guided(design, task, name)
-    z, own = design.points, _ground_names(design)
+    z, ground = design.points, _ground_names(design)
     crank, rocker = _bar(design, Drive.A0), _bar(design, Drive.B0)
     if design.drive is Drive.B0:
         crank, rocker = rocker, crank
@@ -169,7 +169,7 @@ def linkage_of(design: Design, task: Task, name: str, output: str = "") -> Linka
         sliders = (Slider(name=_GUIDE, link="block", points=("B0",), on="coupler", line=line),)
     else:
         del links["rocker"]
-        start, end = (own[key] for key in "ST")
+        start, end = (ground[key] for key in "ST")
         links |= {GROUND: _distinct("A0", start, end), "block": ("B",)}
         sliders = (Slider(name=_GUIDE, link="block", points=("B",), on=GROUND, line=(start, end)),)
     formula = _error_formula(design, task, output)
@@ -178,7 +178,7 @@ def linkage_of(design: Design, task: Task, name: str, output: str = "") -> Linka
         purpose=_purpose(design, task),
         length=task.length,
         angle=task.angle,
-        points=_places(design, guided),
+        points=_point_places(design, guided),
         links=links,
         lengths={f"{one} {other}": abs(z[other] - z[one]) for one, other in bars},
         sliders=sliders,
@@ -200,7 +200,7 @@ def _distinct(*names: str) -> tuple[str, ...]:
     return tuple(dict.fromkeys(names))
 
 
-def _places(design: Design, guided: str) -> dict[str, tuple[float, float]]:
+def _point_places(design: Design, guided: str) -> dict[str, tuple[float, float]]:
     """The points of the file: without P where that is a pivot."""
     names = _ground_names(design)
     return {
@@ -211,7 +211,7 @@ def _places(design: Design, guided: str) -> dict[str, tuple[float, float]]:
 
 
 def _error_formula(design: Design, task: Task, output: str) -> str:
-    """The structural error of a function, whose start angles may have been found."""
+    """The structural error of a function, whose start angles the solver may have chosen."""
     goal, unit = task.function, task.angle.from_radians
     if not output or goal is None or design.drive is not Drive.A0:
         return ""
@@ -241,20 +241,20 @@ def _guided(design: Design, task: Task, name: str) -> Linkage:
     ground = [names[key] for key in (*kind.pivots, *"UVST") if key in z]
     ends = {"A": "K", "B": foot[0] if foot else "A"}  # of the body's lines through A and B
     sliders = []
-    for moving, pivot, line, own in (("A", "A0", "UV", "slide_a"), ("B", "B0", "ST", _GUIDE)):
+    for moving, pivot, line, label in (("A", "A0", "UV", "slide_a"), ("B", "B0", "ST", _GUIDE)):
         block = "block_a" if moving == "A" else "block"
         if pivot in kind.pivots:
             way, carried, on = (ends[moving], moving), pivot, "coupler"
         else:
             way, carried, on = (names[line[0]], names[line[1]]), moving, GROUND
-        sliders.append(Slider(name=own, link=block, points=(carried,), on=on, line=way))
+        sliders.append(Slider(name=label, link=block, points=(carried,), on=on, line=way))
     bars = [*combinations(corners, 2), *((end, key) for key in foot for end in "AB")]
     return Linkage(
         name=name,
         purpose=_purpose(design, task),
         length=task.length,
         angle=task.angle,
-        points=_places(design, guided),
+        points=_point_places(design, guided),
         links={
             GROUND: _distinct(*ground),
             "coupler": (*corners, *foot),
@@ -289,8 +289,8 @@ def _input(design: Design, angle: AngleUnit) -> Input:
     span = design.stop - design.start
     if not design.drive.turns:
         step = span / _STEPS
-        own = "slide_a" if design.drive is Drive.SLIDER_A else _GUIDE
-        return Input(slider=own, start=design.start, stop=design.stop, step=step)
+        slider = "slide_a" if design.drive is Drive.SLIDER_A else _GUIDE
+        return Input(slider=slider, start=design.start, stop=design.stop, step=step)
     start, stop = angle.from_radians(design.start), angle.from_radians(design.stop)
     count = max(1, math.ceil(abs(span) / _STEP - _SAME_TURN))
     if math.isclose(abs(span), FULL_TURN, rel_tol=_SAME_TURN):

@@ -1,4 +1,4 @@
-"""Dyads through three and two poses, with pivots that are given or spread over a region."""
+"""Dyads through three and two poses, with given pivots or with pivots spread over a region."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ _LOSS = 16.0 * UNIT_ROUNDOFF
 
 
 def spread_pivots(points: ComplexArray, wishes: Wishes, count: int) -> ComplexArray:
-    """Pivots spread evenly over the region of wishes, or around the points of a task."""
+    """Pivots spread evenly over the region of the task, or around its points."""
     corners = wishes.region
     if not corners.size:
         middle, size = points.mean(), np.abs(points - points.mean()).max()
@@ -35,7 +35,7 @@ def spread_pivots(points: ComplexArray, wishes: Wishes, count: int) -> ComplexAr
         corners = middle + size * np.array([-1 - 1j, 1 - 1j, 1 + 1j, -1 + 1j])
     low = complex(corners.real.min(), corners.imag.min())
     extent = complex(np.ptp(corners.real), np.ptp(corners.imag))
-    found: list[ComplexArray] = []
+    parts: list[ComplexArray] = []
     number, inside = 0, 0
     # Halton's sequence fills any box evenly; a polygon takes its share of it
     while inside < count and number < 64 * count:
@@ -44,10 +44,10 @@ def spread_pivots(points: ComplexArray, wishes: Wishes, count: int) -> ComplexAr
         z.real += _halton(k, 2) * extent.real
         z.imag += _halton(k, 3) * extent.imag
         z = z[wishes.within_region(z, np.zeros(count))]
-        found.append(z)
+        parts.append(z)
         number, inside = number + count, inside + len(z)
     if inside >= count:
-        return np.concatenate(found)[:count]
+        return np.concatenate(parts)[:count]
     # of a narrow polygon the box has too few points: all of them are mapped into it
     k = np.arange(1, count + 1)
     return points_in_polygon(corners, np.stack([_halton(k, 2), _halton(k, 3)], axis=1))
@@ -85,8 +85,8 @@ def through_moving(moving: ComplexArray, points: ComplexArray, turns: ComplexArr
     if len(points) == 2:
         middle, across = images.mean(axis=1), 1j * (images[:, 1] - images[:, 0])
         fixed = (middle[:, None] + across[:, None] * _SHARES).ravel()
-        own, error = np.repeat(moving, len(_SHARES)), _LOSS * np.repeat(far, len(_SHARES))
-        return DyadSet.made(0, own, fixed, error + _LOSS * np.abs(fixed))
+        moving_pivots, error = np.repeat(moving, len(_SHARES)), _LOSS * np.repeat(far, len(_SHARES))
+        return DyadSet.made(0, moving_pivots, fixed, error + _LOSS * np.abs(fixed))
     fixed, error = circumcentres(images, far)
     return DyadSet.made(0, moving, fixed, error)
 
@@ -111,8 +111,8 @@ def timed_dyads(
     # as real equations: complex numbers as matrices
     real = np.block([[columns.real, -columns.imag], [columns.imag, columns.real]])
     vector = np.concatenate([right.real, right.imag], axis=1)
-    doubt, own = np.full(many, _LOSS), _LOSS * np.abs(vector).max(axis=1)
-    x, error = solve_with_bound(np.tile(real, (many, 1, 1)), vector, doubt, own)
+    doubt, rounding = np.full(many, _LOSS), _LOSS * np.abs(vector).max(axis=1)
+    x, error = solve_with_bound(np.tile(real, (many, 1, 1)), vector, doubt, rounding)
     n = columns.shape[1]
     solution = x[:, :n] + 1j * x[:, n:]
     fixed = pivots if n == 2 else solution[:, 2]
@@ -147,7 +147,7 @@ def inverted(points: ComplexArray, turns: ComplexArray) -> tuple[ComplexArray, C
 
 
 # ----------------------------------------------------------------------
-# Poses with tolerances: exact tasks near the wanted one, and how far their designs miss it.
+# Poses with tolerances: exact tasks near the given one, and how far their designs miss it.
 
 
 _SAMPLES = 400
@@ -159,7 +159,7 @@ _SLIGHT = 1e-6  # rad: for slopes
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class NearTasks:
-    """Five exact poses each of T tasks, (T, 5), and whether they are the wanted poses."""
+    """Five exact poses each of T tasks, (T, 5), and whether they are the poses of the task."""
 
     points: ComplexArray
     angles: Array
@@ -167,7 +167,7 @@ class NearTasks:
 
 
 def near_tasks(task: Task, points: ComplexArray, angles: Array) -> NearTasks:
-    """The wanted poses, and with tolerances a sample of others within them.
+    """The poses of the task, and with tolerances a sample of poses within these.
 
     Of more than five poses each task takes five: the first, all exact ones, and a random choice.
     """
@@ -176,19 +176,19 @@ def near_tasks(task: Task, points: ComplexArray, angles: Array) -> NearTasks:
         return NearTasks(points=points[None], angles=angles[None], is_exact=True)
     rng = np.random.default_rng(_SEED)
     exact = np.array([p.tolerance == 0 and p.angle_tolerance == 0 for p in task.positions])
-    rows, found = np.arange(_SAMPLES)[:, None], []
-    # five of more also at their own angles: few of those turned meet the others
+    rows, tasks = np.arange(_SAMPLES)[:, None], []
+    # five of more poses also at their given angles: few turned ones meet the other poses
     turned = any(p.angle_tolerance for p in task.positions)
     for part in ((0.0, 1.0) if turned else (0.0,)) if count > FIVE else (1.0,):
         shift, turn = drawn_within(task, _SAMPLES, rng)
         if count > FIVE:
-            # the others are compared from the angle of the first
+            # angles of the other poses are compared relative to the first
             turn[:, 0] = 0.0
         index = _choices(rng, exact, count)
-        found.append(((points + shift)[rows, index], (angles + part * turn)[rows, index]))
+        tasks.append(((points + shift)[rows, index], (angles + part * turn)[rows, index]))
     return NearTasks(
-        points=np.concatenate([own for own, _ in found]),
-        angles=np.concatenate([own for _, own in found]),
+        points=np.concatenate([one for one, _ in tasks]),
+        angles=np.concatenate([one for _, one in tasks]),
         is_exact=False,
     )
 
@@ -224,98 +224,98 @@ def _choices(rng: np.random.Generator, exact: Array, count: int) -> IndexArray:
 
 
 def with_misses(
-    task: Task, points: ComplexArray, angles: Array, given: Candidates
+    task: Task, points: ComplexArray, angles: Array, candidates: Candidates
 ) -> Candidates | None:
-    """Designs at all wanted poses, and how far their points miss them; none beyond tolerance.
+    """Designs at all poses of the task, and how far their points miss them; none beyond tolerance.
 
     Designs of five poses of more are placed at the angles of all poses, within their tolerances
     where points are missed least: for the better of both positions that have this angle.
     """
     if len(points) > FIVE:
-        given = _at_all(task, given, points, angles)
-    if not len(given):
+        candidates = _at_all(task, candidates, points, angles)
+    if not len(candidates):
         return None
-    missed = np.abs(given.guided - points)
+    missed = np.abs(candidates.guided - points)
     reach = np.array([position.tolerance for position in task.positions])
     # a pose that is met exactly is met to rounding
-    within = (missed <= reach + given.error[:, None]).all(axis=1)
-    kept = replace(given, miss=missed.max(axis=1)).take(np.flatnonzero(within))
+    within = (missed <= reach + candidates.error[:, None]).all(axis=1)
+    kept = replace(candidates, miss=missed.max(axis=1)).take(np.flatnonzero(within))
     return kept if len(kept) else None
 
 
-def _at_all(task: Task, given: Candidates, points: ComplexArray, angles: Array) -> Candidates:
+def _at_all(task: Task, candidates: Candidates, points: ComplexArray, angles: Array) -> Candidates:
     """Designs whose first position is the first pose, at the angles of all poses."""
     swing = np.array([position.angle_tolerance for position in task.positions])
     swing = swing * task.angle.radians * (np.arange(len(points)) > 0)
-    wanted = angles - angles[0]
+    turned = angles - angles[0]
 
     def misses(turn: Array) -> tuple[Array, ComplexArray, tuple[ComplexArray, ...]]:
-        a, coupler, arm = _placed(given, points, np.exp(1j * (wanted + turn)))
+        a, coupler, arm = _placed(candidates, points, np.exp(1j * (turned + turn)))
         away = a + arm - points
         return np.nan_to_num(np.abs(away), nan=np.inf), away, (a, a + coupler, a + arm)
 
-    turn = np.zeros((len(given), len(points)))
+    turn = np.zeros((len(candidates), len(points)))
     if swing.any():
         tried = [swing * part + turn for part in np.linspace(-1.0, 1.0, _PARTS)]
-        turn = np.choose(np.argmin([misses(own)[0] for own in tried], axis=0), tried)
+        turn = np.choose(np.argmin([misses(missed)[0] for missed in tried], axis=0), tried)
         least, away, _ = misses(turn)
         for _ in range(_STEPS):
             slope = (misses(turn + _SLIGHT)[1] - misses(turn - _SLIGHT)[1]) / (2.0 * _SLIGHT)
             with np.errstate(all="ignore"):
                 step = (away * slope.conj()).real / np.abs(slope) ** 2
             new = np.clip(turn - np.nan_to_num(step), -swing, swing)
-            own, there, _ = misses(new)
-            better = own < least
-            turn, least = np.where(better, new, turn), np.where(better, own, least)
+            missed, there, _ = misses(new)
+            better = missed < least
+            turn, least = np.where(better, new, turn), np.where(better, missed, least)
             away = np.where(better, there, away)
-    return _moved_to(given, *misses(turn)[2])
+    return _moved_to(candidates, *misses(turn)[2])
 
 
 def _placed(
-    given: Candidates, points: ComplexArray, turns: ComplexArray
+    group: Candidates, points: ComplexArray, turns: ComplexArray
 ) -> tuple[ComplexArray, ComplexArray, ComplexArray]:
     """A, B from A and P from A of designs whose bodies are turned (D, N) from the first pose."""
-    coupler = (given.moving_b[:, :1] - given.moving_a[:, :1]) * turns
-    arm = (given.guided[:, :1] - given.moving_a[:, :1]) * turns
-    crank = np.abs(given.moving_a[:, :1] - given.fixed_a[:, None])
-    if not given.kind.has_crank:
+    coupler = (group.moving_b[:, :1] - group.moving_a[:, :1]) * turns
+    arm = (group.guided[:, :1] - group.moving_a[:, :1]) * turns
+    crank = np.abs(group.moving_a[:, :1] - group.fixed_a[:, None])
+    if not group.kind.has_crank:
         # A and B are on lines: fixed ones, or lines of the body through fixed pivots
-        line_a = given.direction_a[:, None] * np.ones_like(turns)
-        line_b = given.direction[:, None] * np.ones_like(turns)
-        if given.kind is LoopKind.OLDHAM:
-            line_a = given.lines_a[:, :1] * turns
-        if given.kind.body_line:
-            line_b = given.lines[:, :1] * turns
+        line_a = group.direction_a[:, None] * np.ones_like(turns)
+        line_b = group.direction[:, None] * np.ones_like(turns)
+        if group.kind is LoopKind.OLDHAM:
+            line_a = group.lines_a[:, :1] * turns
+        if group.kind.body_line:
+            line_b = group.lines[:, :1] * turns
         with np.errstate(all="ignore"):
-            a = meeting(given.fixed_a[:, None], line_a, given.fixed_b[:, None] - coupler, line_b)
+            a = meeting(group.fixed_a[:, None], line_a, group.fixed_b[:, None] - coupler, line_b)
         return a, coupler, arm
     # A is on its circle, and B on its circle or line moved back by the coupler
-    centre = given.fixed_b[:, None] - coupler
+    centre = group.fixed_b[:, None] - coupler
     with np.errstate(invalid="ignore"):
-        if given.kind is LoopKind.FOUR_BAR:
-            rocker = np.abs(given.moving_b[:, :1] - given.fixed_b[:, None])
-            base = centre - given.fixed_a[:, None]
+        if group.kind is LoopKind.FOUR_BAR:
+            rocker = np.abs(group.moving_b[:, :1] - group.fixed_b[:, None])
+            base = centre - group.fixed_a[:, None]
             square = np.abs(base) ** 2
             along = 0.5 * (square + crank**2 - rocker**2)
             across = np.sqrt(square * crank**2 - along**2)
             ways = [base * (along + 1j * s * across) / square for s in (1.0, -1.0)]
         else:
-            u = given.direction[:, None]
-            if given.kind is LoopKind.INVERTED:
+            u = group.direction[:, None]
+            if group.kind is LoopKind.INVERTED:
                 # A keeps its distance from the line through the block
-                u = given.lines[:, :1] * turns
-                h = cross(u[:, :1], given.fixed_b[:, None] - given.moving_a[:, :1])
-                centre = given.fixed_b[:, None] - 1j * h * u
-            away = (centre - given.fixed_a[:, None]) * np.conj(u)
+                u = group.lines[:, :1] * turns
+                h = cross(u[:, :1], group.fixed_b[:, None] - group.moving_a[:, :1])
+                centre = group.fixed_b[:, None] - 1j * h * u
+            away = (centre - group.fixed_a[:, None]) * np.conj(u)
             reach = np.sqrt(crank**2 - away.imag**2)
             ways = [(s * reach + 1j * away.imag) * u for s in (1.0, -1.0)]
-    pivots = [given.fixed_a[:, None] + way for way in ways]
+    pivots = [group.fixed_a[:, None] + way for way in ways]
     misses = [np.nan_to_num(np.abs(a + arm - points), nan=np.inf) for a in pivots]
     return np.where(misses[0] <= misses[1], *pivots), coupler, arm
 
 
 def _moved_to(
-    given: Candidates, a: ComplexArray, b: ComplexArray, guided: ComplexArray
+    candidates: Candidates, a: ComplexArray, b: ComplexArray, guided: ComplexArray
 ) -> Candidates:
     closes = np.isfinite(a).all(axis=1)
-    return replace(given, moving_a=a, moving_b=b, guided=guided).take(np.flatnonzero(closes))
+    return replace(candidates, moving_a=a, moving_b=b, guided=guided).take(np.flatnonzero(closes))

@@ -10,7 +10,7 @@ if TYPE_CHECKING:
     from linkwork.synthesis.precision.four_bar_positions import FourBarPositions as FourBarPositions
     from linkwork.synthesis.precision.given_lengths import (
         four_bars_with_lengths as four_bars_with_lengths,
-        own_member as own_member,
+        solved_member as solved_member,
     )
     from linkwork.synthesis.precision.positions import (
         GivenLength as GivenLength,

@@ -42,16 +42,16 @@ class FourBarPositions:
         return len(self.fixed_a)
 
     @classmethod
-    def of(cls, given: PrecisionPositions, proofs: ProvedLinkages, **further: object) -> Self:
+    def of(cls, positions: PrecisionPositions, proofs: ProvedLinkages, **further: object) -> Self:
         """The linkages of proofs, in the order of the task; ``further``: fields of a subclass."""
         x, a, y, b = proofs.legs.T
-        points = np.concatenate([[given.start], given.poses, given.points])
+        points = np.concatenate([[positions.start], positions.poses, positions.points])
         moving = np.concatenate([np.stack([x, y], axis=1)[:, None], proofs.moving], axis=1)
-        places = np.argsort(given.order)[: given.wanted]
+        places = np.argsort(positions.order)[: positions.listed]
         moving = (moving + points[:, None])[:, places]
         return cls(
-            fixed_a=given.start + a,
-            fixed_b=given.start + b,
+            fixed_a=positions.start + a,
+            fixed_b=positions.start + b,
             moving_a=moving[:, :, 0],
             moving_b=moving[:, :, 1],
             guided=np.broadcast_to(points[places], moving.shape[:2]).copy(),
@@ -62,8 +62,8 @@ class FourBarPositions:
 
     def take(self, index: IndexArray) -> FourBarPositions:
         """Some of the four-bars."""
-        own = {name: getattr(self, name)[index] for name in _ARRAYS}
-        return FourBarPositions(**own)
+        arrays = {name: getattr(self, name)[index] for name in _ARRAYS}
+        return FourBarPositions(**arrays)
 
     @classmethod
     def joined(cls, parts: Sequence[FourBarPositions]) -> FourBarPositions:

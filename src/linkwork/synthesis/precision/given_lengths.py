@@ -50,59 +50,59 @@ _PROVED = 120  # those that are proved
 
 
 def four_bars_with_lengths(
-    given: PrecisionPositions,
-    found: Sequence[FourBarPositions],
+    positions: PrecisionPositions,
+    solved: Sequence[FourBarPositions],
     progress: Callable[[float], None] | None = None,
 ) -> FourBarPositions:
-    """The four-bars with given lengths near those found, at most 120 different ones.
+    """The four-bars with given lengths near solved ones, at most 120 different ones.
 
     Parameters
     ----------
-    given : PrecisionPositions
+    positions : PrecisionPositions
         The positions of the task, without drawn ones, and its lengths.
-    found : sequence of FourBarPositions
+    solved : sequence of FourBarPositions
         Four-bars through these positions.
     progress : callable, optional
         Called with the finished fraction; may raise an error to end the work.
     """
-    size = given.size
-    starts = np.concatenate([_linkages(given, part) / size for part in found])
-    if not len(given.pivots):
+    size = positions.size
+    starts = np.concatenate([_linkages(positions, part) / size for part in solved])
+    if not len(positions.pivots):
         # either leg may be the one whose length is given
         starts = np.concatenate([starts, exchange_legs(starts)])
     if len(starts) > _MOST_STARTS:
         starts = starts[np.linspace(0, len(starts) - 1, _MOST_STARTS).astype(int)]
     with np.errstate(all="ignore"):
-        moved = _moved(given, starts)
+        moved = _moved(positions, starts)
     proofs = []
     for k, linkage in enumerate(moved):
-        proof = prove_linkages(given, linkage[None] * size, _held(given, linkage))
-        proofs.append(FourBarPositions.of(given, proof))
+        proof = prove_linkages(positions, linkage[None] * size, _held(positions, linkage))
+        proofs.append(FourBarPositions.of(positions, proof))
         if progress is not None:
             progress((k + 1) / len(moved))
     if not proofs:
-        return found[0].take(np.zeros(0, dtype=np.intp))
+        return solved[0].take(np.zeros(0, dtype=np.intp))
     return FourBarPositions.joined(proofs)
 
 
-def _linkages(given: PrecisionPositions, found: FourBarPositions) -> ComplexArray:
+def _linkages(positions: PrecisionPositions, bars: FourBarPositions) -> ComplexArray:
     """x, x̄, a, ā, y, ȳ, b, b̄ of proved four-bars, (B, 8) [length]."""
-    first = int(given.order[0])
-    pivots = (found.moving_a[:, first], found.fixed_a, found.moving_b[:, first], found.fixed_b)
-    from_start = np.stack(pivots, axis=1)[found.proved] - given.start
+    first = int(positions.order[0])
+    pivots = (bars.moving_a[:, first], bars.fixed_a, bars.moving_b[:, first], bars.fixed_b)
+    from_start = np.stack(pivots, axis=1)[bars.proved] - positions.start
     whole: ComplexArray = np.stack([from_start, from_start.conj()], axis=2).reshape(-1, CONDITIONS)
     return whole
 
 
-def _moved(given: PrecisionPositions, linkage: ComplexArray) -> ComplexArray:
+def _moved(positions: PrecisionPositions, linkage: ComplexArray) -> ComplexArray:
     """Different linkages with the lengths, (B, 8), from those that pass the positions."""
-    free = list(given.problem.free)
-    goal = np.array([entry.length / given.size for entry in given.lengths])
-    begin = np.abs(_sides(given, linkage))
+    free = list(positions.problem.free)
+    goal = np.array([entry.length / positions.size for entry in positions.lengths])
+    begin = np.abs(_sides(positions, linkage))
     for step in range(1, _STEPS + 1):
-        wanted = begin + (goal - begin) * (step / _STEPS)
+        lengths = begin + (goal - begin) * (step / _STEPS)
         for _ in range(_CORRECTIONS if step < _STEPS else _POLISH):
-            f, jacobian = _conditions(given, list(wanted.T), linkage)
+            f, jacobian = _conditions(positions, list(lengths.T), linkage)
             # the shortest correction; rows of one size, since their squares are solved
             rows = np.linalg.norm(jacobian, axis=2)
             f, jacobian = f / rows, jacobian / rows[:, :, None]
@@ -114,55 +114,55 @@ def _moved(given: PrecisionPositions, linkage: ComplexArray) -> ComplexArray:
             linkage = 0.5 * (linkage + linkage[:, np.arange(CONDITIONS) ^ 1].conj())
     settled = relative_size(change, linkage[:, free], _LEAST_SIZE) < _SETTLED
     kept = linkage[settled]
-    good = given.problem.proper(kept[:, free], given.parameters(given.size))
+    good = positions.problem.proper(kept[:, free], positions.parameters(positions.size))
     return distinct_solutions(kept[good], _DISTINCT)[:_PROVED]
 
 
-def _sides(given: PrecisionPositions, linkage: ComplexArray) -> ComplexArray:
+def _sides(positions: PrecisionPositions, linkage: ComplexArray) -> ComplexArray:
     """The vectors of given lengths, (B, L)."""
     places = {name: linkage[:, k] for name, k in PLACES.items()} | {"P": np.zeros(len(linkage))}
     sides: ComplexArray = np.stack(
-        [places[entry.one] - places[entry.other] for entry in given.lengths], axis=1
+        [places[entry.one] - places[entry.other] for entry in positions.lengths], axis=1
     ).astype(complex)
     return sides
 
 
 def _conditions(
-    given: PrecisionPositions, wanted: Sequence[Any], linkage: ComplexArray
+    positions: PrecisionPositions, lengths: Sequence[Any], linkage: ComplexArray
 ) -> tuple[ComplexArray, ComplexArray]:
     """What linkages (B, 8) leave of positions and lengths, (B, M), and its slopes (B, M, n)."""
-    problem = given.problem
-    c = given.parameters(given.size).tolist()
-    c[len(c) - len(wanted) :] = [length**2 for length in wanted]
+    problem = positions.problem
+    c = positions.parameters(positions.size).tolist()
+    c[len(c) - len(lengths) :] = [length**2 for length in lengths]
     columns = list(np.ascontiguousarray(linkage[:, list(problem.free)].T))
     f, jacobian, _ = as_batch(len(linkage), problem.equations(columns, c, [0.0] * len(c)))
     return f, jacobian
 
 
-def _held(given: PrecisionPositions, linkage: ComplexArray) -> tuple[HeldValue, ...]:
+def _held(task: PrecisionPositions, linkage: ComplexArray) -> tuple[HeldValue, ...]:
     """Coordinates that keep their values so that the others are determined: place, value [length].
 
     One for each freedom, along which it changes most.
     """
-    size = given.size
-    _, jacobian = _conditions(given, [x.length / size for x in given.lengths], linkage[None])
+    size = task.size
+    _, jacobian = _conditions(task, [x.length / size for x in task.lengths], linkage[None])
     slopes = jacobian[0, :, 0::2]
     real = np.stack([2.0 * slopes.real, -2.0 * slopes.imag], axis=2).reshape(len(slopes), -1)
     _, _, right = np.linalg.svd(real)
     null = right[len(slopes) :].T.copy()
-    values = linkage[list(given.problem.free)][0::2] * size
-    found = []
+    values = linkage[list(task.problem.free)][0::2] * size
+    held = []
     for _ in range(null.shape[1]):
         place = int(np.linalg.norm(null, axis=1).argmax())
         z = values[place // 2]
-        found.append((place, float(z.imag if place % 2 else z.real)))
+        held.append((place, float(z.imag if place % 2 else z.real)))
         along = null[place] / np.linalg.norm(null[place])
         null -= np.outer(null @ along, along)
-    return tuple(found)
+    return tuple(held)
 
 
 # ----------------------------------------------------------------------
-# Solved random members of families with given lengths, kept in the user's cache.
+# Solved random members of families with given lengths, stored in the user's cache.
 #
 # There are hundreds of such families, so none is shipped: a member is solved when the first task
 # asks for it, by closed paths until the trace test confirms it. A budget of paths, not of time,
@@ -176,12 +176,12 @@ _MOST_PATHS = 250_000  # paths, up to a minute and a half of two cores compiled,
 _MOST_IN_NUMPY = 10_000  # and as long without a compiler
 _ROUNDS, _DIRECTIONS = 8, 2  # trace tests, and directions of each
 _SINGULAR = 1e12  # condition number of a random member
-_SPENT = "spent"  # paths that did not suffice, and the solutions that they found
+_SPENT = "spent"  # paths that did not suffice, and the number of their solutions
 _UNKNOWN = "not all solutions of a random task of this kind are known: "
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
-class OwnMember:
+class SolvedMember:
     """A solved member, or ``None`` and the reason in a clause."""
 
     member: Member | None
@@ -212,10 +212,10 @@ class _Budget:
         return SparingTracker(max(count, _SMALL), tell)(path, start, options)
 
 
-def own_member(
+def solved_member(
     problem: PrecisionProblem, progress: Callable[[float], None] | None = None
-) -> OwnMember:
-    """The solved member of a family with given lengths, solved now if it is not kept.
+) -> SolvedMember:
+    """The solved member of a family with given lengths, from the cache or solved now.
 
     ``progress``: called with the spent part of the budget; may raise an error to end the work.
     """
@@ -227,29 +227,29 @@ def own_member(
     return known
 
 
-_KNOWN = dict[PrecisionProblem, OwnMember]()
+_KNOWN = dict[PrecisionProblem, SolvedMember]()
 
 
 def _solved(
     problem: PrecisionProblem, most: int, progress: Callable[[float], None] | None
-) -> OwnMember:
+) -> SolvedMember:
     rng, tracker, grown = np.random.default_rng(_SEED), _Budget(most, progress), [1]
     if _is_singular(problem):
-        told = "in general some of the conditions contradict each other, and others are missing"
-        return OwnMember(member=None, reason=told)
+        reason = "in general some of the conditions contradict each other, and others are missing"
+        return SolvedMember(member=None, reason=reason)
     try:
         with np.errstate(all="ignore"):
-            found = solve_and_confirm(
+            result = solve_and_confirm(
                 problem, rng, tracker, grown.append, idle=1, directions=_DIRECTIONS, rounds=_ROUNDS
             )
     except _SpentError:
         keep_arrays(_path(problem), {_SPENT: np.array([most, grown[-1]])})
         return _spent(most, grown[-1])
-    if not found.confirmed:
-        told = f"the trace test denies that {grown[-1]} are all"
-        return OwnMember(member=None, reason=_UNKNOWN + told)
-    keep_arrays(_path(problem), as_arrays(problem, found.member))
-    return OwnMember(member=found.member)
+    if not result.confirmed:
+        reason = f"the trace test denies that {grown[-1]} are all"
+        return SolvedMember(member=None, reason=_UNKNOWN + reason)
+    keep_arrays(_path(problem), as_arrays(problem, result.member))
+    return SolvedMember(member=result.member)
 
 
 def _is_singular(problem: PrecisionProblem) -> bool:
@@ -261,12 +261,12 @@ def _is_singular(problem: PrecisionProblem) -> bool:
     return bool(np.linalg.cond(rows) > _SINGULAR)
 
 
-def _spent(followed: int, found: int) -> OwnMember:
-    told = f"after {followed} paths, which found {found}"
-    return OwnMember(member=None, reason=_UNKNOWN + told)
+def _spent(followed: int, solutions: int) -> SolvedMember:
+    reason = f"after {followed} paths with {solutions} solutions"
+    return SolvedMember(member=None, reason=_UNKNOWN + reason)
 
 
-def _stored(problem: PrecisionProblem, most: int) -> OwnMember | None:
+def _stored(problem: PrecisionProblem, most: int) -> SolvedMember | None:
     """The member that is kept, or that so many paths do not find one; a file that cannot be read
     is written again.
     """
@@ -275,9 +275,9 @@ def _stored(problem: PrecisionProblem, most: int) -> OwnMember | None:
         np.load(_path(problem)) as stored,
     ):
         if _SPENT in stored:
-            followed, found = stored[_SPENT].tolist()
-            return None if followed < most else _spent(followed, found)
-        return OwnMember(member=member_of_arrays(problem, stored))
+            followed, solutions = stored[_SPENT].tolist()
+            return None if followed < most else _spent(followed, solutions)
+        return SolvedMember(member=member_of_arrays(problem, stored))
     return None
 
 

@@ -1,7 +1,7 @@
 """The conditions of a four-bar's positions as quadratic equations with whole coefficients.
 
-Moving pivots A_j and B_j in position j, seen from the traced point there, are unknowns of their
-own. With x, y of the first position and the fixed pivots a, b, all seen from its point,
+Moving pivots A_j and B_j in position j, seen from the traced point there, are separate
+unknowns. With x, y of the first position and the fixed pivots a, b, all seen from its point,
 
     |δ|² + 2 Re((A - a) δ̄) - 2 Re((A - x) ā) = 0,   alike with B, b and y,
     |A|² = |x|²,   B x = A y,      or in a pose  A = e x,   B = e y.
@@ -35,7 +35,7 @@ class PositionEquations:
 
 
 def position_equations(
-    given: PrecisionPositions, held: Sequence[HeldValue] = ()
+    positions: PrecisionPositions, held: Sequence[HeldValue] = ()
 ) -> PositionEquations:
     """The equations; v is x, [a], y, [b], all A_j and B_j, then a, b as far as they are given,
     e of all poses, δ of all positions, given lengths and held values, each with 0, then 1 and 0.
@@ -46,17 +46,17 @@ def position_equations(
         first = next(free)
         return first, first + 1
 
-    pivots = len(given.pivots)
-    count = len(given.poses) + len(given.points)
+    pivots = len(positions.pivots)
+    count = len(positions.poses) + len(positions.points)
     x, a = place(), (0, 0) if pivots > 0 else place()
     y, b = place(), (0, 0) if pivots > 1 else place()
     moving = tuple((place(), place()) for _ in range(count))
     unknowns = (8 - 2 * pivots) + 4 * count
     a = place() if pivots > 0 else a
     b = place() if pivots > 1 else b
-    turns = [place() for _ in given.poses]
+    turns = [place() for _ in positions.poses]
     deltas = [place() for _ in range(count)]
-    lengths = [place()[0] for _ in given.lengths]
+    lengths = [place()[0] for _ in positions.lengths]
     values = [place()[0] for _ in held]
     one = place()
     writer = ProductWriter()
@@ -70,9 +70,9 @@ def position_equations(
             writer.equal_lengths(left, x)
             writer.equal_products(right, x, left, y)
     named = {"A": x, "A0": a, "B": y, "B0": b}
-    for entry, length in zip(given.lengths, lengths, strict=True):
+    for entry, length in zip(positions.lengths, lengths, strict=True):
         ends = [named[end] for end in (entry.one, entry.other) if end in named]
-        _given_length(writer, ends[0], ends[1] if len(ends) > 1 else None, length)
+        _length_equation(writer, ends[0], ends[1] if len(ends) > 1 else None, length)
     for (k, _), value in zip(held, values, strict=True):
         writer.equation((1, k, one[0]), (-1, value, one[0]))
     return PositionEquations(
@@ -97,7 +97,7 @@ def _leg(
     )
 
 
-def _given_length(
+def _length_equation(
     writer: ProductWriter, one: ComplexPlace, other: ComplexPlace | None, length: int
 ) -> None:
     """|A - B|² = L²; ``None`` is the traced point, from which all is seen."""

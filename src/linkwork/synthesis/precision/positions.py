@@ -40,8 +40,8 @@ class PrecisionPositions:
         In the order of their ends.
     order : (1 + M + N,) int
         The number that every position has in the task: the start, poses, points.
-    wanted : int
-        How many of them belong to the task; others were drawn.
+    listed : int
+        How many of them the task lists; the others were drawn.
     """
 
     start: complex
@@ -51,7 +51,7 @@ class PrecisionPositions:
     pivots: ComplexArray
     lengths: tuple[GivenLength, ...]
     order: IndexArray
-    wanted: int
+    listed: int
 
     @classmethod
     def of(
@@ -80,7 +80,7 @@ class PrecisionPositions:
             pivots=pivots,
             lengths=tuple(sorted(lengths)),
             order=order,
-            wanted=len(order),
+            listed=len(order),
         )
 
     @property

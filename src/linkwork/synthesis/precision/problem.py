@@ -39,10 +39,10 @@ class ProductSums:
 
     def exact_residual(self, v: Sequence[int]) -> list[int]:
         """F of whole numbers v, without rounding, in the square of their unit."""
-        found = [0] * self.unknowns
+        residual = [0] * self.unknowns
         for row, factor, i, j in self._terms:
-            found[row] += factor * v[i] * v[j]
-        return found
+            residual[row] += factor * v[i] * v[j]
+        return residual
 
     @cached_property
     def _terms(self) -> list[tuple[int, int, int, int]]:
@@ -62,20 +62,20 @@ class ProductSums:
         """``negative``: -1 turns negative factors."""
         wide = np.zeros((self.unknowns, self.size, len(v)))
         for row, factor, i, j in self._terms:
-            own = factor if factor > 0 else negative * factor
-            wide[row, i] += own * v[:, j]
-            wide[row, j] += own * v[:, i]
+            coefficient = factor if factor > 0 else negative * factor
+            wide[row, i] += coefficient * v[:, j]
+            wide[row, j] += coefficient * v[:, i]
         return np.ascontiguousarray(wide[:, : self.unknowns].transpose(2, 0, 1))
 
     def curvature(self, weights: Array) -> Array:
         """Bounds of D²F along directions of the largest norm 1 in weights (B, n), (B, n)."""
-        own = (self.one < self.unknowns) & (self.other < self.unknowns)
-        found = np.zeros((self.unknowns, len(weights)))
+        both = (self.one < self.unknowns) & (self.other < self.unknowns)
+        curvature = np.zeros((self.unknowns, len(weights)))
         for row, factor, i, j in zip(
-            self.row[own], np.abs(self.factor[own]), self.one[own], self.other[own], strict=True
+            self.row[both], np.abs(self.factor[both]), self.one[both], self.other[both], strict=True
         ):
-            found[row] += 2.0 * factor * weights[:, i] * weights[:, j]
-        return found.T
+            curvature[row] += 2.0 * factor * weights[:, i] * weights[:, j]
+        return curvature.T
 
 
 @dataclass
@@ -131,14 +131,14 @@ def exchange_legs(linkage: ComplexArray) -> ComplexArray:
 
 def cognates(linkage: ComplexArray) -> tuple[ComplexArray, ComplexArray]:
     """Both cognates of linkages (B, 8): with the fixed pivots A0, C0, and with B0, C0."""
-    pivot, found = third_pivot(linkage), []
+    pivot, pair = third_pivot(linkage), []
     for leg in (linkage, exchange_legs(linkage)):
         x, a, y = (leg[:, k : k + 2] for k in (0, 2, 4))
         with np.errstate(all="ignore"):
             # parallelogram A0 A P A', and a coupler similar to A B P
             moved, beside = a - x, (a - x) * y / (y - x)
-        found.append(np.concatenate([moved, a, beside, pivot], axis=1))
-    return found[0], found[1]
+        pair.append(np.concatenate([moved, a, beside, pivot], axis=1))
+    return pair[0], pair[1]
 
 
 # ----------------------------------------------------------------------
@@ -167,7 +167,7 @@ PLACES = {"A": 0, "A0": 2, "B": 4, "B0": 6}
 _SYMMETRIC = {("A", "B"), ("A0", "B0")}  # lengths that stay if the legs exchange their names
 _TURN = 0.7  # rad, of random complex rotations
 _TRIES = 60  # steps of Newton's method towards random positions of a random linkage,
-_CLOSED = 1e-10  # and what they may leave
+_CLOSED = 1e-10  # and how many conditions they may leave open
 _NOTHING = 1e-9  # of the largest number of a solution: zero
 _FAR = 10.0  # random positions further away make a bad start
 
@@ -204,8 +204,8 @@ class PrecisionProblem:
     @property
     def freedoms(self) -> int:
         """Conditions that are missing until a finite number of four-bars is left."""
-        given = 2 * self.poses + self.points + 2 * self.pivots + len(self.lengths)
-        return CONDITIONS - given
+        conditions = 2 * self.poses + self.points + 2 * self.pivots + len(self.lengths)
+        return CONDITIONS - conditions
 
     @property
     def parameters(self) -> int:
@@ -213,14 +213,14 @@ class PrecisionProblem:
         return 3 * self.poses + 2 * self.points + 2 * self.pivots + len(self.lengths)
 
     @property
-    def given(self) -> tuple[int, ...]:
-        """The numbers of x, x̄, a, ā, y, ȳ, b, b̄ that are given,"""
+    def fixed(self) -> tuple[int, ...]:
+        """Indices of the given ones among x, x̄, a, ā, y, ȳ, b, b̄."""
         return (2, 3, 6, 7)[: 2 * self.pivots]
 
     @property
     def free(self) -> tuple[int, ...]:
-        """and the others."""
-        return tuple(k for k in range(CONDITIONS) if k not in self.given)
+        """Indices of the unknown ones among x, x̄, a, ā, y, ȳ, b, b̄."""
+        return tuple(k for k in range(CONDITIONS) if k not in self.fixed)
 
     @property
     def last(self) -> slice:
@@ -238,7 +238,7 @@ class PrecisionProblem:
         """The equations, with operators alone."""
         first = 3 * self.poses + 2 * self.points
         end = first + 2 * self.pivots
-        places, numbers = (*self.free, *self.given), (*z, *c[first:end])
+        places, numbers = (*self.free, *self.fixed), (*z, *c[first:end])
         linkage = [number for _, number in sorted(zip(places, numbers, strict=True), key=_place)]
         rows = list[_Row]()
         for k in range(0, 3 * self.poses, 3):
@@ -249,7 +249,7 @@ class PrecisionProblem:
         for k in range(3 * self.poses, first, 2):
             rows.append(_point_row(linkage, c[k : k + 2], rate[k : k + 2]))
         changes = [
-            sum((slopes[k] * r for k, r in zip(self.given, rate[first:end], strict=True)), change)
+            sum((slopes[k] * r for k, r in zip(self.fixed, rate[first:end], strict=True)), change)
             for _, slopes, change in rows
         ]
         slopes = [[row[k] for k in self.free] for _, row, _ in rows]
@@ -289,12 +289,12 @@ class PrecisionProblem:
         if self.pivots == 2 or (self.pivots and no_cognates) or set(self.lengths) - _SYMMETRIC:
             return x
         linkage = self.linkages(x, c)
-        own, a, other, b = (linkage[:, k : k + 2] for k in (0, 2, 4, 6))
+        ground, a, other, b = (linkage[:, k : k + 2] for k in (0, 2, 4, 6))
         if no_cognates:
-            return np.concatenate([own + other, a + b, own * a + other * b], axis=1)
+            return np.concatenate([ground + other, a + b, ground * a + other * b], axis=1)
         third = third_pivot(linkage)
         if self.pivots:
-            return np.concatenate([b + third, b * third, own * (a - own)], axis=1)
+            return np.concatenate([b + third, b * third, ground * (a - ground)], axis=1)
         return np.concatenate([a + b + third, a * b * third], axis=1)
 
     def random_parameters(self, rng: np.random.Generator) -> ComplexArray:
@@ -320,7 +320,7 @@ class PrecisionProblem:
             [_length_row(ends, pair, 0.0, 0.0)[0] for pair in self.lengths], dtype=np.complex128
         )
         return (
-            self._parameters(turns[: self.poses], moved, linkage[list(self.given)], squares),
+            self._parameters(turns[: self.poses], moved, linkage[list(self.fixed)], squares),
             linkage[list(self.free)],
         )
 
@@ -329,7 +329,7 @@ class PrecisionProblem:
         whole = np.empty((len(x), CONDITIONS), dtype=complex)
         whole[:, list(self.free)] = x
         first = 3 * self.poses + 2 * self.points
-        whole[:, list(self.given)] = c[first : first + 2 * self.pivots]
+        whole[:, list(self.fixed)] = c[first : first + 2 * self.pivots]
         return whole
 
     def _parameters(
@@ -365,14 +365,14 @@ def _pose_rows(linkage: Sequence[Any], pose: Sequence[Any], rate: Sequence[Any])
         leg = linkage[first : first + 4]
         x, x_bar, a, a_bar = leg
         p, q, r = _leg_numbers(leg, d, d_bar)
-        own = [
+        slopes_of_leg = [
             (a_bar - d_bar) * g - d_bar, (a - d) * g_bar - d,
             x_bar * g_bar + d_bar, x * g + d,
         ]  # fmt: skip
         change = p * e_rate - q * e_bar_rate
         change = change + (a_bar - x_bar - d_bar - x_bar * g_bar) * d_rate
         change = change + (a - x - d - x * g) * d_bar_rate
-        slopes = [*own, *[0.0] * 4] if first == 0 else [*[0.0] * 4, *own]
+        slopes = [*slopes_of_leg, *[0.0] * 4] if first == 0 else [*[0.0] * 4, *slopes_of_leg]
         rows.append((p * g + q * g_bar + r, slopes, change))  # eq. (110)
     return rows
 
@@ -400,7 +400,7 @@ def _point_row(linkage: Sequence[Any], point: Sequence[Any], rate: Sequence[Any]
 
 
 def _length_row(linkage: Sequence[Any], ends: tuple[str, str], square: Any, rate: Any) -> _Row:
-    """The equation of a length, of which the square is given."""
+    """The equation of a length, for its given square."""
     along, along_bar = 0.0, 0.0
     slopes: list[Any] = [0.0] * CONDITIONS
     signs = zip(ends, (1.0, -1.0), strict=True)

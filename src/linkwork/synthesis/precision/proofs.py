@@ -53,15 +53,15 @@ def whole_unit(size: float) -> int:
 
 
 def prove_numbers(
-    equations: ProductSums, guess: Array, given: Sequence[int], bits: int, size: float
+    equations: ProductSums, guess: Array, data: Sequence[int], bits: int, size: float
 ) -> ProvedNumbers:
     """Refine unknowns (B, n), and prove them.
 
-    ``given``: the other numbers, as whole ones in units of 2^-bits; ``size``: of the task.
+    ``data``: the other numbers, as whole ones in units of 2^-bits; ``size``: of the task.
     """
     count, n, unit = len(guess), equations.unknowns, 0.5**bits
     whole = np.empty((count, equations.size), dtype=object)
-    whole[:, :n], whole[:, n:] = _whole_numbers(guess, bits), given
+    whole[:, :n], whole[:, n:] = _whole_numbers(guess, bits), data
     v, f = np.empty((count, equations.size)), np.empty((count, n))
     holds, error = np.zeros(count, dtype=bool), np.full(count, np.inf)
     live = np.arange(count)
@@ -77,7 +77,7 @@ def prove_numbers(
             holds[live], error[live] = _prove(equations, v[live], jacobian, inverse, f[live], scale)
             largest = (np.abs(correction) / scale).max(axis=1)
             rounding = 3.0 * UNIT_ROUNDOFF * np.abs(v[live]).max(axis=1)
-            near = largest < 1.0  # what is as large as the numbers themselves leads elsewhere
+            near = largest < 1.0  # a step as large as the numbers themselves leads elsewhere
             holds[live] &= near
             moving = near & (error[live] > rounding) & (largest > _EXACT)
             v[live[near], :n] -= correction[near]
@@ -99,13 +99,13 @@ def _prove(
     """Whether the theorem holds in the largest norm with weights, (B,), and a bound of the error
     after the correction that belongs to F.
     """
-    n, own = equations.unknowns, np.abs(inverse)
-    inside = np.where(np.isfinite(own).all(axis=(1, 2)), 1.0, np.inf)
+    n, magnitude = equations.unknowns, np.abs(inverse)
+    inside = np.where(np.isfinite(magnitude).all(axis=(1, 2)), 1.0, np.inf)
     # rounding: v to floats, sums of products, and the products of matrices
     blur = 4.0 * UNIT_ROUNDOFF * equations.jacobian_size(np.abs(v))
     defect = np.abs(np.eye(n) - inverse @ jacobian)
-    defect += own @ (blur + (n + 2.0) * UNIT_ROUNDOFF * np.abs(jacobian))
-    # weights along which the defect is small: an unknown may move as far as the others move it
+    defect += magnitude @ (blur + (n + 2.0) * UNIT_ROUNDOFF * np.abs(jacobian))
+    # weights along which the defect is small: an unknown may move as far as the others force it to
     w = scale
     for _ in range(3):
         w = np.maximum(scale, 4.0 * matrix_vector(defect, w))
@@ -113,9 +113,9 @@ def _prove(
         np.abs(f) * (1.0 + (n + 4.0) * UNIT_ROUNDOFF)
         + _TURN_ERROR * np.abs(v).max(initial=0.0) ** 2
     )
-    y = (matrix_vector(own, rest) / w).max(axis=1) * inside
+    y = (matrix_vector(magnitude, rest) / w).max(axis=1) * inside
     z = (matrix_vector(defect, w) / w).max(axis=1) * inside
-    omega = (matrix_vector(own, equations.curvature(w)) / w).max(axis=1) * inside
+    omega = (matrix_vector(magnitude, equations.curvature(w)) / w).max(axis=1) * inside
     slack = PROOF_SLACK
     holds, radius, _, _ = radii(y * slack, z * slack, omega * slack, np.zeros_like(omega))
     # eq. (29), and the rounding of the correction
@@ -176,31 +176,31 @@ class ProvedLinkages:
 
 
 def prove_linkages(
-    given: PrecisionPositions, linkage: ComplexArray, held: Sequence[HeldValue] = ()
+    positions: PrecisionPositions, linkage: ComplexArray, held: Sequence[HeldValue] = ()
 ) -> ProvedLinkages:
     """Refine real linkages x, x̄, a, ā, y, ȳ, b, b̄ (B, 8) [length], and prove them."""
-    equations, bits = position_equations(given, held), whole_unit(given.size)
-    data = _given_numbers(given, held, bits)
-    found = prove_numbers(equations.sums, _start(given, linkage), data, bits, given.size)
-    pairs = found.v[:, 0::2] + 1j * found.v[:, 1::2]
+    equations, bits = position_equations(positions, held), whole_unit(positions.size)
+    data = _parameter_numbers(positions, held, bits)
+    proof = prove_numbers(equations.sums, _start(positions, linkage), data, bits, positions.size)
+    pairs = proof.v[:, 0::2] + 1j * proof.v[:, 1::2]
     return ProvedLinkages(
-        holds=found.holds,
+        holds=proof.holds,
         legs=pairs[:, [k // 2 for k, _ in equations.legs]],
         moving=np.stack(
             [pairs[:, [a // 2, b // 2]] for (a, _), (b, _) in equations.moving], axis=1
         ),
-        error=found.error,
+        error=proof.error,
     )
 
 
-def _start(given: PrecisionPositions, linkage: ComplexArray) -> Array:
+def _start(positions: PrecisionPositions, linkage: ComplexArray) -> Array:
     """The unknowns (B, n) of computed linkages."""
     x, a, y, b = (0.5 * (linkage[:, k] + linkage[:, k + 1].conj()) for k in (0, 2, 4, 6))
-    pivots = len(given.pivots)
+    pivots = len(positions.pivots)
     parts = [x, *([a] if pivots < 1 else []), y, *([b] if pivots < 2 else [])]
-    turns = list(np.exp(1j * given.turns))
+    turns = list(np.exp(1j * positions.turns))
     with np.errstate(all="ignore"):
-        turns += [_turn(x, a, y, b, d) for d in given.points - given.start]
+        turns += [_turn(x, a, y, b, d) for d in positions.points - positions.start]
     for turn in turns:
         parts += [turn * x, turn * y]
     z = np.stack(parts, axis=1)
@@ -218,19 +218,19 @@ def _turn(
     return np.asarray(e / np.abs(e))
 
 
-def _given_numbers(given: PrecisionPositions, held: Sequence[HeldValue], bits: int) -> list[int]:
+def _parameter_numbers(task: PrecisionPositions, held: Sequence[HeldValue], bits: int) -> list[int]:
     """Pivots, turns, distances, lengths, held values and 1, as whole numbers."""
-    start = complex(given.start)
+    start = complex(task.start)
     whole = [whole_number(start.real, bits), whole_number(start.imag, bits)]
 
     def from_start(z: complex) -> list[int]:
         return [whole_number(z.real, bits) - whole[0], whole_number(z.imag, bits) - whole[1]]
 
-    numbers = [k for z in given.pivots.tolist() for k in from_start(z)]
-    for angle in given.turns.tolist():
+    numbers = [k for z in task.pivots.tolist() for k in from_start(z)]
+    for angle in task.turns.tolist():
         numbers += exact_turn(angle, bits)
-    for z in (*given.poses.tolist(), *given.points.tolist()):
+    for z in (*task.poses.tolist(), *task.points.tolist()):
         numbers += from_start(z)
-    for value in (*(x.length for x in given.lengths), *(x for _, x in held)):
+    for value in (*(x.length for x in task.lengths), *(x for _, x in held)):
         numbers += [whole_number(value, bits), 0]
     return [*numbers, 1 << bits, 0]

@@ -38,18 +38,18 @@ def points_in_polygon(corners: ComplexArray, shares: Array) -> ComplexArray:
     widths = [[np.sum(x[1::2] - x[::2]) for x in (left, right)] for _, _, left, right in strips]
     width = np.maximum(np.array(widths), 0.0)
     parts = np.concatenate([[0.0], np.cumsum(width.sum(axis=1) * np.diff(levels))])
-    found = np.zeros(len(shares), dtype=complex)
+    points = np.zeros(len(shares), dtype=complex)
     for k, (first, second) in enumerate(shares):
-        wanted = first * parts[-1]
-        n = min(int(np.searchsorted(parts, wanted, side="right")) - 1, len(strips) - 1)
-        share = (wanted - parts[n]) / (parts[n + 1] - parts[n])
+        area = first * parts[-1]
+        n = min(int(np.searchsorted(parts, area, side="right")) - 1, len(strips) - 1)
+        share = (area - parts[n]) / (parts[n + 1] - parts[n])
         w0, w1 = width[n]
         # the height below which this share of the strip lies
         height = share * (w0 + w1) / (w0 + np.sqrt(w0**2 + share * (w1**2 - w0**2)) or 1.0)
         below, above, left, right = strips[n]
         x = left + height * (right - left)
-        found[k] = _along(x, second) + 1j * (below + height * (above - below))
-    return found
+        points[k] = _along(x, second) + 1j * (below + height * (above - below))
+    return points
 
 
 def _along(ends: Array, share: float) -> float:
@@ -63,7 +63,7 @@ def _along(ends: Array, share: float) -> float:
 # ----------------------------------------------------------------------
 # Positions that leave freedoms: the missing conditions are drawn at random, task by task.
 #
-# A fixed pivot takes two conditions, and is drawn first; what is left is met by further points,
+# A fixed pivot takes two conditions, and is drawn first; further points take the rest,
 # drawn between positions of the task.
 
 
@@ -80,8 +80,8 @@ def positions_with_samples(
     region: ComplexArray | None = None,
     lengths: Sequence[GivenLength] = (),
 ) -> Iterator[PrecisionPositions]:
-    """Tasks with eight conditions, one if the given ones are that many, else ``samples`` without
-    the lengths.
+    """Tasks with eight conditions: one if the task gives eight, else ``samples`` without the
+    lengths.
 
     Parameters
     ----------
@@ -118,12 +118,12 @@ def positions_with_samples(
         way = points[(before + 1) % len(points)] - points[before]
         off = _POINTS * size * rng.normal(size=(extra, 2)) @ [1.0, 1.0j]
         more = points[before] + rng.uniform(size=extra) * way + off
-        found = PrecisionPositions.of(
+        positions = PrecisionPositions.of(
             np.concatenate([points, more]),
             np.concatenate([angles, np.full(extra, np.nan)]),
             np.concatenate([pivots, z]),
         )
-        yield replace(found, wanted=len(points))
+        yield replace(positions, listed=len(points))
 
 
 def _polygon(region: ComplexArray) -> ComplexArray:
@@ -143,10 +143,10 @@ def _missing(points: ComplexArray, angles: Array, pivots: ComplexArray) -> int:
     if poses == len(points):
         raise InputError("positions that all have an angle are met by dyads: give a point as well")
     posed, free = max(poses - 1, 0), len(points) - max(poses, 1)
-    given = 2 * posed + free + 2 * len(pivots)
-    if given > CONDITIONS:
+    conditions = 2 * posed + free + 2 * len(pivots)
+    if conditions > CONDITIONS:
         raise InputError(
-            f"a four-bar meets at most {CONDITIONS} conditions, these are {given}: a pose after "
-            "the first position and a fixed pivot are two, a point is one"
+            f"a four-bar meets at most {CONDITIONS} conditions, these are {conditions}: a pose "
+            "after the first position and a fixed pivot are two, a point is one"
         )
-    return CONDITIONS - given
+    return CONDITIONS - conditions

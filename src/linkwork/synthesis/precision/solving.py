@@ -1,7 +1,7 @@
 """The tracker of solution paths: compiled where that saves time, else in batches of NumPy.
 
 NumPy steps all paths of a batch at once, and a round takes nearly as long for one path as for many:
-of paths that creep towards infinity, rounds tell the cost, not their number.
+of paths that creep towards infinity, the rounds count, not the paths.
 """
 
 from __future__ import annotations
@@ -69,7 +69,7 @@ class CompiledTracker:
 
 
 class SparingTracker:
-    """Follows paths in NumPy until compiled code saves time: asked anew before every batch.
+    """Follows paths in NumPy until compiled code saves time; decided anew before every batch.
 
     Parameters
     ----------
@@ -86,23 +86,23 @@ class SparingTracker:
         """Follow every start (B, n), a solution at σ = 1, to σ = 0."""
         if compiled_pays(self._expected):
             return self._compiled(path, start, options)
-        found = track(path, start, options, self._progress)
-        _FOLLOWED[0] += max(len(start), _ROUND * found.steps)
-        return found
+        ends = track(path, start, options, self._progress)
+        _FOLLOWED[0] += max(len(start), _ROUND * ends.steps)
+        return ends
 
     def _compiled(self, path: ParameterPath, start: ComplexArray, options: PathOptions) -> Paths:
         follow, count = CompiledTracker(), math.ceil(len(start) / _AT_A_TIME)
         if self._progress is None or count < 2:
             return follow(path, start, options)
-        found = []
+        followed = []
         for part in np.array_split(start, count):
-            found.append(follow(path, part, options))
-            self._progress(len(found) / count)
+            followed.append(follow(path, part, options))
+            self._progress(len(followed) / count)
         return Paths(
-            w=np.concatenate([one.w for one in found]),
-            near=np.concatenate([one.near for one in found]),
-            state=np.concatenate([one.state for one in found]),
-            steps=max(one.steps for one in found),
+            w=np.concatenate([one.w for one in followed]),
+            near=np.concatenate([one.near for one in followed]),
+            state=np.concatenate([one.state for one in followed]),
+            steps=max(one.steps for one in followed),
         )
 
 
@@ -241,7 +241,7 @@ class PrecisionFourBars(FourBarPositions):
 
 
 def four_bars_through(
-    given: PrecisionPositions,
+    positions: PrecisionPositions,
     tracker: Tracker | None = None,
     *,
     member: Member | None = None,
@@ -252,7 +252,7 @@ def four_bars_through(
 
     Parameters
     ----------
-    given : PrecisionPositions
+    positions : PrecisionPositions
         With two conditions for every pose and every fixed pivot, one for every point and length,
         not counting the first position: eight in all, at least one of them a point.
     tracker : Tracker, optional
@@ -264,9 +264,9 @@ def four_bars_through(
     progress : callable, optional
         Called with the finished fraction of the paths; may raise an error to end the work.
     """
-    problem, size = given.problem, given.size
+    problem, size = positions.problem, positions.size
     member = member or start_member(problem)
-    goal, rng = given.parameters(size), np.random.default_rng(_SEED)
+    goal, rng = positions.parameters(size), np.random.default_rng(_SEED)
     tracker = tracker or SparingTracker(alike * len(member.x), progress)
     roots = roots_at(problem, member, goal, tracker, rng)
     apart = np.abs(problem.mirrored(roots.x) - roots.x) / (_LEAST_SIZE + np.abs(roots.x))
@@ -277,5 +277,5 @@ def four_bars_through(
         # with one pivot given the second cognate, which lacks it, is none
         others = cognates(real)[: 2 - problem.pivots]
         real, triple = np.concatenate([real, *others]), np.tile(triple, 1 + len(others))
-    proofs = prove_linkages(given, real * size)
-    return PrecisionFourBars.of(given, proofs, triple=triple, real=count, roots=roots)
+    proofs = prove_linkages(positions, real * size)
+    return PrecisionFourBars.of(positions, proofs, triple=triple, real=count, roots=roots)

@@ -3,7 +3,7 @@
 Two four-bars share the fixed pivot B0: A0 A B B0 with the crank, and C0 D C B0 with the rocker. B
 and C are on one link, the bell crank. Each four-bar is seen along its ground, which is its unit of
 length: from A0 to B0 the crank is the complex number a in the first position, the arm B0 B is b;
-from C0 to B0 the rocker C0 D is d, the arm B0 C is c; ā, b̄, c̄, d̄ are unknowns of their own, which
+from C0 to B0 the rocker C0 D is d, the arm B0 C is c; ā, b̄, c̄, d̄ are separate unknowns, which
 are conjugates at real solutions.
 Turned by u and v crank and rocker leave the couplers' lengths as they are if the bell crank has
 turned by t = 1 + s with
@@ -108,7 +108,7 @@ class WattProblem:
         return x[:, np.arange(_UNKNOWNS) ^ 1].conj()
 
     def fingerprint(self, x: ComplexArray, c: ComplexArray) -> ComplexArray:
-        """Numbers that tell solutions (B, n) apart: there are no cognates of one kind."""
+        """Numbers by which solutions (B, n) differ: there are no cognates of one kind."""
         return x
 
     def random_parameters(self, rng: np.random.Generator) -> ComplexArray:
@@ -199,7 +199,7 @@ def watt_member() -> Member:
 #
 # Both four-bars are seen from the ground of the crank to that of the rocker: a is the crank, b and
 # c are the arms of the bell crank, e is the rocker. The arms in every position, seen from crank and
-# rocker, are unknowns of their own, B = b t / u and C = c t / v. With m = b̄ c all conditions are
+# rocker, are separate unknowns, B = b t / u and C = c t / v. With m = b̄ c all conditions are
 # quadratic equations, eq. (182):
 #
 #     |B|² = |b|²,   B̄ C = m u v̄,   |ū + B - a|² = |1 + b - a|²,   |v̄ + e - C|² = |1 + e - c|².
@@ -247,8 +247,8 @@ def prove_six_bars(x: ComplexArray, inputs: Array, outputs: Array) -> ProvedSixB
         parts += [b * t / one, c * t / other]
     guess = np.ascontiguousarray(np.stack(parts, axis=1)).view(float)
     bits = whole_unit(_SIZE)
-    found = prove_numbers(_equations(), guess, _given(inputs, outputs, bits), bits, _SIZE)
-    pairs = found.v[:, 0::2] + 1j * found.v[:, 1::2]
+    proof = prove_numbers(_equations(), guess, _parameters(inputs, outputs, bits), bits, _SIZE)
+    pairs = proof.v[:, 0::2] + 1j * proof.v[:, 1::2]
     arms = pairs[:, :4]
     with np.errstate(all="ignore"):
         turned = pairs[:, 5 : 5 + 2 * _POSITIONS : 2] * u / arms[:, 1:2]
@@ -256,12 +256,12 @@ def prove_six_bars(x: ComplexArray, inputs: Array, outputs: Array) -> ProvedSixB
     return ProvedSixBars(
         arms=arms,
         turns=np.concatenate([np.ones((len(x), 1)), turned], axis=1),
-        holds=found.holds,
-        error=found.error,
+        holds=proof.holds,
+        error=proof.error,
     )
 
 
-def _given(inputs: Array, outputs: Array, bits: int) -> list[int]:
+def _parameters(inputs: Array, outputs: Array, bits: int) -> list[int]:
     """u, v and u v̄ of all pairs, and 1, as whole numbers."""
     numbers = list[int]()
     for one, other in zip(inputs.tolist(), outputs.tolist(), strict=True):
@@ -276,13 +276,13 @@ def _equations() -> ProductSums:
     places = [(k, k + 1) for k in range(0, 10 + 10 * _POSITIONS + 2, 2)]
     a, b, c, e, m = places[:5]
     arms = places[5 : 5 + 2 * _POSITIONS]
-    given, one = places[5 + 2 * _POSITIONS : -1], places[-1]
+    rotations, one = places[5 + 2 * _POSITIONS : -1], places[-1]
     writer = ProductWriter()
     for part, terms in zip(m, _conjugate_product(b, c), strict=True):
         writer.equation((-1, part, one[0]), *terms)
     for k in range(_POSITIONS):
         arm_b, arm_c = arms[2 * k : 2 * k + 2]
-        u, v, both = given[3 * k : 3 * k + 3]
+        u, v, both = rotations[3 * k : 3 * k + 3]
         # eq. (182)
         writer.equal_lengths(arm_b, b)
         real, imag = _conjugate_product(arm_b, arm_c)

@@ -20,13 +20,13 @@ from linkwork.synthesis.improvement.curves import (
 )
 from linkwork.synthesis.improvement.settings import Improvement
 from linkwork.synthesis.loops.candidates import Candidates, Drive, LoopKind
-from linkwork.synthesis.solvers.result import Found
+from linkwork.synthesis.solvers.result import SolvedTask
 from linkwork.synthesis.tasks.conditions import LENGTHS, Wishes
 from linkwork.synthesis.tasks.curve_file import FEWEST
 from linkwork.synthesis.tasks.task import Task
 
 _STARTS = 1000
-_USUAL = 12.0  # largest distances of a point from their mean: how long links may be without a wish
+_USUAL = 12.0  # largest distances of a point from their mean: the longest links without a bound
 _CLOSES = 2.0  # largest steps: how near the ends of a closed curve are
 _ROUNDINGS = 16.0  # of a pivot from lengths and angles
 _SAFETY = 4.0  # more than the first order of the error of an intersection of circles
@@ -41,7 +41,7 @@ _BOUNDED = {
 }  # fmt: skip
 
 
-def solve_curve(task: Task, wishes: Wishes, progress: Callable[[float], None] | None) -> Found:
+def solve_curve(task: Task, wishes: Wishes, progress: Callable[[float], None] | None) -> SolvedTask:
     """The best four-bars and slider-cranks of a sample of starts: different fits.
 
     Raises
@@ -51,13 +51,13 @@ def solve_curve(task: Task, wishes: Wishes, progress: Callable[[float], None] | 
     """
     if {*task.mechanisms} <= task.left_out.keys():
         name, why = next(iter(task.left_out.items()))
-        told = f'"{name}" does not fit what is given: {why}; leave one out, or add "four-bar"'
-        task.refuse([(("mechanism",), told)])
+        message = f'"{name}" does not fit what is given: {why}; leave one out, or add "four-bar"'
+        task.refuse([(("mechanism",), message)])
     goal = curve_goal_of(task, wishes)
     settings = task.improvement or Improvement()
     starts = settings.starts or _STARTS
-    asked = [name for name in _KINDS if name in task.mechanisms]
-    kinds = [_KINDS[name] for name in asked if name not in task.left_out]
+    requested = [name for name in _KINDS if name in task.mechanisms]
+    kinds = [_KINDS[name] for name in requested if name not in task.left_out]
     fitted: list[FittedCurves] = []
     for k, kind in enumerate(kinds):
         rng = np.random.default_rng([settings.seed, k])
@@ -70,14 +70,14 @@ def solve_curve(task: Task, wishes: Wishes, progress: Callable[[float], None] | 
         if not fitted[-1].finished:
             break
     count, usual = sum(map(len, fitted)), usual_longest(task)
-    return Found(
+    return SolvedTask(
         candidates=tuple(_candidates(goal, part) for part in fitted if len(part)),
         complex=count,
         real=count,
         proved=count,
         completeness=Completeness.SAMPLED,
         message=_message(goal, fitted, settings.seed)
-        + "".join(f"; no {name}: {why}" for name, why in task.left_out.items() if name in asked)
+        + "".join(f"; no {name}: {why}" for name, why in task.left_out.items() if name in requested)
         + f"; lengths up to {usual:.4g} {task.length} unless [wanted] bounds them"
         * math.isfinite(usual)
         + ("" if task.curve is None else task.curve.note),
@@ -112,8 +112,8 @@ def curve_goal_of(task: Task, wishes: Wishes) -> CurveGoal:
     )
     low, high = goal.input_bounds
     if low > high:
-        told = "leave no angle for the inputs of the positions in the wanted range: widen one"
-        task.refuse([(("improve", "bounds", INPUT), told)])
+        message = "leave no angle for the inputs of the positions in the wanted range: widen one"
+        task.refuse([(("improve", "bounds", INPUT), message)])
     return goal
 
 
@@ -161,9 +161,9 @@ def _bounds(task: Task, wishes: Wishes) -> Iterator[tuple[str, tuple[float, floa
             yield f"{name}.{axis}", (value, value)
     for name, length in task.given.lengths.items():
         yield _BOUNDED[name], (length, length)
-    given: Mapping[str, tuple[float, float]] = {}
+    bounds: Mapping[str, tuple[float, float]] = {}
     if task.improvement is not None:
-        given = task.improvement.bounds
+        bounds = task.improvement.bounds
         settings = task.improvement
         others = {
             "vary": settings.vary,
@@ -175,19 +175,19 @@ def _bounds(task: Task, wishes: Wishes) -> Iterator[tuple[str, tuple[float, floa
         }
         for key, entry in others.items():
             if entry:
-                told = 'belongs to task = "improve": leave it out'
-                task.refuse([(("improve", key), told)])
+                message = 'belongs to task = "improve": leave it out'
+                task.refuse([(("improve", key), message)])
     placed = ("A0.x", "A0.y", "B0.x", "B0.y")[: 2 * len(task.given.fixed_pivots)]
-    for name, (low, high) in given.items():
-        told = ""
+    for name, (low, high) in bounds.items():
+        message = ""
         if name not in _BOUNDED:
-            told = "is no dimension: these are " + ", ".join(f'"{own}"' for own in _BOUNDED)
+            message = "is no dimension: these are " + ", ".join(f'"{one}"' for one in _BOUNDED)
         elif name in (*task.given.lengths, *placed):
-            told = "is given in [given] already: leave one out"
+            message = "is given in [given] already: leave one out"
         elif name in LENGTHS and high <= 0.0:
-            told = f"must allow lengths above 0, got {low:g} to {high:g}"
-        if told:
-            task.refuse([(("improve", "bounds", name), told)])
+            message = f"must allow lengths above 0, got {low:g} to {high:g}"
+        if message:
+            task.refuse([(("improve", "bounds", name), message)])
         scale = task.angle.radians if name == INPUT else 1.0
         yield _BOUNDED[name], (low * scale, high * scale)
 
@@ -196,10 +196,10 @@ def _message(goal: CurveGoal, fitted: list[FittedCurves], seed: int) -> str:
     starts = sum(part.starts for part in fitted)
     kind = "a closed curve" if goal.closed else "a part of a curve"
     timing = "given timing" if goal.inputs is not None else "free timing"
-    told = f"a sample: different fits from {starts} starts with seed {seed}"
+    text = f"a sample: different fits from {starts} starts with seed {seed}"
     if not all(part.finished for part in fitted):
-        told = f"interrupted: the best so far of {starts} starts with seed {seed}"
-    return f"{told}; {kind}, {timing}"
+        text = f"interrupted: the best so far of {starts} starts with seed {seed}"
+    return f"{text}; {kind}, {timing}"
 
 
 def _candidates(goal: CurveGoal, fitted: FittedCurves) -> Candidates:

@@ -20,11 +20,11 @@ from linkwork.synthesis.poses.burmester import sampled_dyads
 from linkwork.synthesis.poses.dyad_set import DyadSet, PoseSet
 from linkwork.synthesis.poses.dyads import solve_five_poses
 from linkwork.synthesis.solvers.functions import FunctionWishes, fit_functions
-from linkwork.synthesis.solvers.result import Found
+from linkwork.synthesis.solvers.result import SolvedTask
 from linkwork.synthesis.tasks.conditions import Wishes
 from linkwork.synthesis.tasks.task import Task
 
-#: Of the longest to the shortest link of fits without wishes for lengths: links of one drawing.
+#: Of the longest to the shortest link of fits without [wanted] lengths, so that one can draw them.
 USUAL_RATIO = 20.0
 
 _LOSS = 16.0 * UNIT_ROUNDOFF  # of angles, their sines, and sums of few of them
@@ -33,13 +33,13 @@ _STARTS = 24  # start angles in each direction, where two are free
 _TRIVIAL = 1e-6  # relative: both moving pivots at the fixed ones move in every function
 _FIVE, _FOUR = 5, 4
 _SHARES = (0.067, 0.15, 0.25, 0.0)  # of the range, before the first point of a start
-# where starts are given: before the first and behind the last point, and before the middle one
+# for given start angles: before the first and behind the last point, and before the middle one
 _FIRSTS, _MIDDLES = (0.0, 0.067, 0.15, 0.25, 0.35), (0.4, 0.5, 0.6)
 
 
 def solve_function(
     task: Task, wishes: Wishes, progress: Callable[[float], None] | None = None
-) -> Found:
+) -> SolvedTask:
     """All designs, or a sample of the family, for a function task."""
     goal = task.function
     assert goal is not None, "a task of functions has one"
@@ -53,21 +53,21 @@ def solve_function(
     unit = float(2.0 ** np.frexp(np.abs(v).max())[1]) if slides else task.given.ground
     of_outputs = unit if slides else 1.0
     wishes = replace(wishes, shortest=wishes.shortest / unit, longest=wishes.longest / unit)
-    found = _solved(task, wishes, u, v / of_outputs, progress)
+    solved = _solved(task, wishes, u, v / of_outputs, progress)
     first = complex(*(task.given.fixed_pivots or [(0.0, 0.0)])[0])
     return replace(
-        found,
+        solved,
         candidates=tuple(
             replace(part.moved(first, unit), miss=of_outputs * part.miss)
-            for part in found.candidates
+            for part in solved.candidates
         ),
-        zeros=tuple((begin, of_outputs * output) for begin, output in found.zeros),
+        zeros=tuple((begin, of_outputs * output) for begin, output in solved.zeros),
     )
 
 
 def _solved(
     task: Task, wishes: Wishes, u: Array, v: Array, progress: Callable[[float], None] | None
-) -> Found:
+) -> SolvedTask:
     """Designs whose fixed pivot A0 is at 0, for inputs and outputs (1, K)."""
     goal, slides = task.function, task.mechanisms[0] == "slider-crank"
     assert goal is not None, "a task of functions has one"
@@ -76,13 +76,13 @@ def _solved(
     if goal.starts_fixed:
         made, determined = _through_three(u, v, slides)
         zeros = ((float(u[0, 0]), float(v[0, 0])),) * len(made)
-        return _found(task, made, complete=1 if determined.all() else -1, zeros=zeros)
+        return _solved_function(task, made, complete=1 if determined.all() else -1, zeros=zeros)
     if u.shape[1] == _FIVE:
         return _through_five(task, u, v, slides)
     if u.shape[1] == _FOUR:
         return _through_four(task, u, v, slides)
     made, _ = _through_three(*_freely_begun(u, v, slides), slides)
-    return _found(task, made, complete=0)
+    return _solved_function(task, made, complete=0)
 
 
 def _freely_begun(u: Array, v: Array, slides: bool) -> tuple[Array, Array]:
@@ -120,8 +120,8 @@ def freudenstein(u: Array, v: Array) -> tuple[Array, Array]:
 
 
 def _through_three(u: Array, v: Array, slides: bool) -> tuple[list[Candidates], BoolArray]:
-    """Loops with given start angles, for B functions (B, 3), and which of these determine one, if
-    only in complex numbers.
+    """Loops with given start angles, for B functions (B, 3), and which functions determine a loop,
+    also with complex numbers only.
     """
     if slides:
         # eq. (150)
@@ -187,24 +187,24 @@ def _coupled(dyads: DyadSet, u: Array, v: Array, slides: bool) -> list[Candidate
     real = (dyads.kind == 0) & (np.abs(dyads.fixed) > _TRIVIAL * size)
     real &= slides | (np.abs(dyads.moving) > _TRIVIAL * size)
     some = dyads.take(real)
-    own = some.moving
-    begin, second = (own.real, own.imag) if slides else (np.angle(own), np.abs(own))
+    crank = some.moving
+    begin, second = (crank.real, crank.imag) if slides else (np.angle(crank), np.abs(crank))
     phi, out = u[some.task] + np.angle(some.fixed)[:, None], v[some.task] + begin[:, None]
     return _loops(phi, out, np.abs(some.fixed), second, some.error, slides)
 
 
-def _through_five(task: Task, u: Array, v: Array, slides: bool) -> Found:
+def _through_five(task: Task, u: Array, v: Array, slides: bool) -> SolvedTask:
     points, angles = _relative_poses(u, v, slides)
     solved = solve_five_poses(points, angles)
     poses = PoseSet(points=points, turns=np.exp(1j * angles))
     made = _coupled(DyadSet.of_solutions(solved, poses), u, v, slides)
-    return _found(task, made, complete=3 if bool(solved.complete[0]) else -3)
+    return _solved_function(task, made, complete=3 if bool(solved.complete[0]) else -3)
 
 
-def _through_four(task: Task, u: Array, v: Array, slides: bool) -> Found:
+def _through_four(task: Task, u: Array, v: Array, slides: bool) -> SolvedTask:
     points, angles = _relative_poses(u, v, slides)
     dyads = sampled_dyads(points[0], angles[0])
-    return _found(task, _coupled(dyads, u, v, slides), complete=0)
+    return _solved_function(task, _coupled(dyads, u, v, slides), complete=0)
 
 
 def _fitted(
@@ -214,22 +214,22 @@ def _fitted(
     v: Array,
     slides: bool,
     progress: Callable[[float], None] | None,
-) -> Found:
+) -> SolvedTask:
     """Different fits of pairs, with given starts or by differences, from loops through three."""
     goal = task.function
     assert goal is not None, "a task of functions has one"
     first = None if goal.starts_fixed else _first_inputs(task, u)
-    begun = _given_begins(u, v) if goal.starts_fixed else _free_begins(u, v, slides)
+    begun = _begins_at_fixed_angles(u, v) if goal.starts_fixed else _free_begins(u, v, slides)
     starts = [
         _lanes(loops, u[index[0]], v[index[0]], slides, goal.starts_fixed)
-        for index, own in begun
-        for loops in _through_three(*own, slides)[0]
+        for index, x_fit in begun
+        for loops in _through_three(*x_fit, slides)[0]
     ]
     starts.append((np.zeros((0, 5)), np.zeros(0)))
     x, side = (np.concatenate(part) for part in zip(*starts, strict=True))
     size = float(np.ptp(v)) if slides else 1.0
     if usual := has_usual_ratio(task):
-        # a slider-crank's lengths may grow without end, its output has a size of its own
+        # a slider-crank's lengths may grow without end; its output has a size
         far = max(size, float(np.abs(v).max())) if goal.starts_fixed else size
         longest = USUAL_RATIO * far if slides else math.inf
         wishes = replace(wishes, ratio=USUAL_RATIO, longest=longest)
@@ -245,19 +245,19 @@ def _fitted(
     )
     made: list[Candidates] = []
     zeros: list[tuple[float, float]] = []
-    for own, wrong in zip(fits.x, fits.wrong, strict=True):
+    for x_fit, wrong in zip(fits.x, fits.wrong, strict=True):
         miss = float(np.abs(wrong).max())
         # without bounds in the first turn
-        begin = own[3] if first is None or np.isfinite(first[0]) else own[3] % FULL_TURN
-        made += _fit_design(u + own[3], v + own[4] + wrong, own[:3], slides, miss)
-        zeros.append((float(u[0] + begin), float(v[0] + own[4])))
-    found = _found(task, made, complete=0, zeros=tuple(zeros))
-    told = f"1 {goal.fit} fit" if len(made) == 1 else f"{len(made)} different {goal.fit} fits"
-    message = f"a sample: {told} from {len(x)} starts"
+        begin = x_fit[3] if first is None or np.isfinite(first[0]) else x_fit[3] % FULL_TURN
+        made += _fit_design(u + x_fit[3], v + x_fit[4] + wrong, x_fit[:3], slides, miss)
+        zeros.append((float(u[0] + begin), float(v[0] + x_fit[4])))
+    result = _solved_function(task, made, complete=0, zeros=tuple(zeros))
+    text = f"1 {goal.fit} fit" if len(made) == 1 else f"{len(made)} different {goal.fit} fits"
+    message = f"a sample: {text} from {len(x)} starts"
     if fits.interrupted:
         message = f"interrupted: the best so far of {len(x)} starts"
     if not made:
-        message = "nothing found: no loop through three of the pairs follows all of them"
+        message = "no result: no loop through three of the pairs follows all of them"
     if fits.minimal.any():
         message += f", {int(fits.minimal.sum())} of them proved to be local minima"
     if not fits.closes.all():
@@ -265,7 +265,7 @@ def _fitted(
     if usual:
         of = "the shortest and the size of the output" if slides else "the shortest"
         message += f"; lengths up to {USUAL_RATIO:g} times {of} unless [wanted] bounds them"
-    return replace(found, message=message, starts=len(x), interrupted=fits.interrupted)
+    return replace(result, message=message, starts=len(x), interrupted=fits.interrupted)
 
 
 def has_usual_ratio(task: Task) -> bool:
@@ -291,19 +291,19 @@ _Begun = tuple[IndexArray, tuple[Array, Array]]
 def _free_begins(u: Array, v: Array, slides: bool) -> Iterator[_Begun]:
     """A grid of starts, at a few places."""
     for share in _SHARES:
-        index = _places(len(u), (share, 0.5, 1.0 - share))
+        index = _spread_index(len(u), (share, 0.5, 1.0 - share))
         yield index, _freely_begun(u[None, index], v[None, index], slides)
 
 
-def _given_begins(u: Array, v: Array) -> Iterator[_Begun]:
+def _begins_at_fixed_angles(u: Array, v: Array) -> Iterator[_Begun]:
     """Many places."""
     for shares in product(_FIRSTS, _MIDDLES, _FIRSTS):
-        index = _places(len(u), (shares[0], shares[1], 1.0 - shares[2]))
+        index = _spread_index(len(u), (shares[0], shares[1], 1.0 - shares[2]))
         if len(set(index)) == len(index):
             yield index, (u[None, index], v[None, index])
 
 
-def _places(count: int, shares: Sequence[float]) -> IndexArray:
+def _spread_index(count: int, shares: Sequence[float]) -> IndexArray:
     return np.asarray((np.array(shares) * (count - 1)).round().astype(np.intp))
 
 
@@ -331,11 +331,13 @@ def _fit_design(u: Array, v: Array, lengths: Array, slides: bool, miss: float) -
     return made
 
 
-def _found(
+def _solved_function(
     task: Task, made: list[Candidates], complete: int, zeros: tuple[tuple[float, float], ...] = ()
-) -> Found:
-    """``complete``: how many solutions are all of them, negative if this is not proved, 0 for a
-    sample.
+) -> SolvedTask:
+    """The loops with their counts.
+
+    ``complete``: the number of solutions of a complete list, negative if this is not proved, 0
+    for a sample.
     """
     real = sum(map(len, made))
     proved = sum(int(np.isfinite(part.error).sum()) for part in made)
@@ -347,7 +349,7 @@ def _found(
         grade = Completeness.NOT_PROVED
         message = "not proved: to rounding, the equations are singular: families of mechanisms, "
         message += "such as parallelograms, are not listed"
-    return Found(
+    return SolvedTask(
         candidates=tuple(made),
         complex=abs(complete) or real,
         real=real,

@@ -12,7 +12,7 @@ from linkwork.core.foundation.rounding import EPSILON
 from linkwork.core.foundation.units import FULL_TURN
 from linkwork.synthesis.improvement.curve_fit import CurveConstraints
 from linkwork.synthesis.improvement.curves import CurveGoal, FourBarCurves, SliderCrankCurves
-from linkwork.synthesis.lane_least_squares import Box, OwnVariables, Residuals, starts_of
+from linkwork.synthesis.lane_least_squares import Box, Residuals, RowVariables, starts_of
 from linkwork.synthesis.lane_problems import POWERS, LaneProblem, Multipliers, different
 from linkwork.synthesis.loops.limits import dot
 from linkwork.synthesis.tasks.conditions import Wishes
@@ -45,8 +45,8 @@ def rocker_errors(inputs: Array, outputs: Array, side: float | Array) -> Errors:
             coupler = base * (along + 1j * side * across) / square
             # B - B0 = A + coupler - 1, divided by a signed length
             rocker = (coupler - base) / b
-            found = np.angle(rocker)
-            wrong = np.mod(found - outputs + np.pi, 2.0 * np.pi) - np.pi
+            angle = np.angle(rocker)
+            wrong = np.mod(angle - outputs + np.pi, 2.0 * np.pi) - np.pi
             slope = b * dot(coupler, 1j * rocker)
             gradient = [dot(coupler, crank), -dot(coupler, rocker), c + 0.0 * wrong]
             gradient.append(dot(coupler, 1j * a * crank))
@@ -119,7 +119,7 @@ def levelled(errors: Errors, start: Array, points: list[int]) -> tuple[Array, fl
 # Wishes of a task of functions as constraints on the lanes of its fits, eq. (155).
 
 
-_MARGIN = 1e-4  # of lengths, relatively: what multipliers leave
+_MARGIN = 1e-4  # of lengths, relative: the error that multipliers leave
 
 
 class FunctionWishes:
@@ -129,24 +129,24 @@ class FunctionWishes:
     """
 
     def __init__(self, wishes: Wishes, u: Array, size: float, slides: bool, lanes: int) -> None:
-        asked = wishes.range
+        span = wishes.range
         #: The driven range, unless it is that of the inputs, and moves with their start.
-        self.range = None if asked is None or asked.turn else (asked.start, asked.stop)
+        self.range = None if span is None or span.turn else (span.start, span.stop)
         self.ends = sorted(self.range or (float(u.min()), float(u.max())))
         self.kind = SliderCrankCurves if slides else FourBarCurves
         self.columns = [2, 4, 3] if slides else [4, 6, 5]
         goal = CurveGoal(
             points=np.array([0.0, 2.0 * size], dtype=complex),
             closed=False,
-            turns_fully=asked is not None and asked.turn,
+            turns_fully=span is not None and span.turn,
             transmission=wishes.transmission,
             shortest=wishes.shortest * (1.0 + _MARGIN),
             longest=wishes.longest * (1.0 - _MARGIN),
             ratio=wishes.ratio * (1.0 - _MARGIN),
         )
         self.constraints = CurveConstraints(self.kind, goal, lanes)
-        wanted = asked or goal.transmission or goal.shortest
-        self.is_wanted = bool(wanted or min(goal.longest, goal.ratio) < np.inf)
+        limits = span or goal.transmission or goal.shortest
+        self.are_any = bool(limits or min(goal.longest, goal.ratio) < np.inf)
 
     def _loops(self, x: Array) -> tuple[Array, Array, Array]:
         """Dimensions (D, P) of the same loops as curves, signs of theirs here, and the angles of
@@ -166,16 +166,16 @@ class FunctionWishes:
         return loops, signs, middle + np.clip(away, -half, half)
 
     def broken(self, x: Array, lanes: IndexArray) -> tuple[Array, Array]:
-        """How far wishes are broken, (D, K), and by the parameters, (D, K, 5)."""
-        if not self.is_wanted:
+        """How far requirements are broken, (D, K), and by the parameters, (D, K, 5)."""
+        if not self.are_any:
             return np.zeros((len(x), 0)), np.zeros((len(x), 0, 5))
         loops, signs, angles = self._loops(x)
         h, slope = self.constraints.residuals(loops, lanes)
         by_start = np.zeros_like(h)
-        found = self.constraints.at_points(loops, angles, lanes)
-        if found is not None:
-            h, slope = np.append(h, found[0], axis=1), np.append(slope, found[1], axis=1)
-            by_start = np.append(by_start, 0.0 * found[2] if self.range else found[2], axis=1)
+        more = self.constraints.at_points(loops, angles, lanes)
+        if more is not None:
+            h, slope = (np.append(h, more[0], axis=1), np.append(slope, more[1], axis=1))
+            by_start = np.append(by_start, 0.0 * more[2] if self.range else more[2], axis=1)
         by_x = slope[:, :, self.columns] * signs[:, None]
         return h, np.concatenate([by_x, by_start[:, :, None], 0.0 * h[:, :, None]], axis=2)
 
@@ -190,14 +190,14 @@ class FunctionWishes:
 
 
 _STEPS, _POWER_STEPS = 150, 40
-_WEIGHTS = (10.0, 30.0, 30.0, 100.0, 100.0)  # of wishes, round by round
+_WEIGHTS = (10.0, 30.0, 30.0, 100.0, 100.0)  # of requirements, round by round
 _LANES = 120  # of the starts, those with the smallest sums of squares
 _KEPT = 24  # lanes that minimise the largest miss
 _FAR = 1e3  # ratios of lengths
 _HARDLY = 0.01  # the sine of the least transmission angle
 _ALIKE = 0.02  # relative: lanes that end at one fit, or in one valley
 
-#: The wishes of so many lanes.
+#: The requirements of so many lanes.
 Held = Callable[[int], FunctionWishes]
 
 
@@ -237,12 +237,12 @@ class _FunctionProblem(LaneProblem):
         self.u, self.v, self.side, self.wishes = u, v, side, held(len(side))
         self.make = slider_errors if slides else rocker_errors
         none = np.zeros(self.wishes.broken(np.ones((0, 5)), np.arange(0))[0].shape[1], dtype=bool)
-        super().__init__(box, OwnVariables(), len(side), len(u), none)
+        super().__init__(box, RowVariables(), len(side), len(u), none)
 
     @property
     def multipliers(self) -> list[Multipliers]:
-        """Those of wishes."""
-        return self.wishes.constraints.multipliers if self.wishes.is_wanted else []
+        """Multipliers of the requirements."""
+        return self.wishes.constraints.multipliers if self.wishes.are_any else []
 
     def errors(self, x: Array, lanes: IndexArray) -> tuple[Array, Array]:
         """Errors (D, N) and their derivatives (D, N, 5)."""
@@ -254,11 +254,11 @@ class _FunctionProblem(LaneProblem):
     def evaluate(
         self, x: Array, t: Array, lanes: IndexArray, power: int | None = None
     ) -> Residuals:
-        """Errors as rows of one number, and broken wishes."""
+        """Errors as rows of one number, and broken requirements."""
         wrong, by_x = self.errors(x, lanes)
         broken = self.wishes.broken(x, lanes)
-        found = Residuals(wrong[:, :, None], by_x[:, :, None], None, *broken)
-        return self.raised(found, lanes, power)
+        residuals = Residuals(wrong[:, :, None], by_x[:, :, None], None, *broken)
+        return self.raised(residuals, lanes, power)
 
 
 def fit_functions(
@@ -365,11 +365,11 @@ def _sharpened(lanes: _FunctionProblem, x: Array, k: int, box: Box) -> tuple[Arr
     """A fit whose largest errors are made equal, if that lowers them, and whether it is minimal;
     numbers at their bounds stay there.
     """
-    free, given = (x > box.least) & (x < box.most), box.least == box.most
+    free, fixed = (x > box.least) & (x < box.most), box.least == box.most
 
-    def errors(own: Array) -> tuple[Array, Array]:
+    def errors(free_values: Array) -> tuple[Array, Array]:
         every = x.copy()
-        every[free] = own
+        every[free] = free_values
         wrong, by_x = lanes.errors(every[None], np.array([k]))
         return wrong[0], by_x[0][:, free]
 
@@ -378,11 +378,11 @@ def _sharpened(lanes: _FunctionProblem, x: Array, k: int, box: Box) -> tuple[Arr
     if not np.isfinite(before).all() or len(before) < count:
         return x, False
     points = [int(n) for n in np.sort(np.argsort(-before, kind="stable")[:count])]
-    found = levelled(errors, x[free], points)
-    if found is None or not np.abs(errors(found[0])[0]).max() <= before.max() * (1.0 + _LEVEL):
+    level = levelled(errors, x[free], points)
+    if level is None or not np.abs(errors(level[0])[0]).max() <= before.max() * (1.0 + _LEVEL):
         return x, False
     sharp = x.copy()
-    sharp[free] = found[0]
+    sharp[free] = level[0]
     if (box.inside(sharp) != sharp).any():
         return x, False
-    return sharp, bool((free | given).all()) and levels_minimise(errors, found[0], points)
+    return sharp, bool((free | fixed).all()) and levels_minimise(errors, level[0], points)

@@ -1,4 +1,4 @@
-"""Tasks that improve a mechanism: goals, bounds and wishes, and designs with their verdicts."""
+"""Tasks that improve a mechanism: goals, bounds and requirements; designs with verdicts."""
 
 from __future__ import annotations
 
@@ -101,17 +101,17 @@ def improve_description(
         name = points.point or next(iter(description.trace), "")
         if not name:
             known = choices("points", model.equations.points)
-            told = f'is missing: "{description.name}" traces no point; name the one that passes '
-            task.refuse([(("improve", "point"), f"{told}the positions {known}")])
+            message = f'is missing: "{description.name}" traces no point; name the one that passes '
+            task.refuse([(("improve", "point"), f"{message}the positions {known}")])
         task.refuse(_unreached(reach, name, points))
         goals.append(points)
-    task.refuse((("improve", *key), told) for key, told in settings.front_problems(goals))
+    task.refuse((("improve", *key), message) for key, message in settings.front_problems(goals))
 
     def judged(design: ImprovedDesign) -> SweptDesign:
         return SweptDesign(task=task, swept=lambda: design, wishes=wishes)
 
     try:
-        found = improved_designs(
+        improved = improved_designs(
             model,
             goals,
             settings,
@@ -122,22 +122,22 @@ def improve_description(
     except MechanismError as error:
         task.refuse((("improve", *problem.key), problem.message) for problem in error.problems)
         raise
-    designs = [judged(design) for design in found]
-    interrupted = any(design.message.startswith("interrupted") for design in found)
+    designs = [judged(design) for design in improved]
+    interrupted = any(design.message.startswith("interrupted") for design in improved)
     return tuple(designs), settings.starts or STARTS, interrupted
 
 
 def _mechanism(task: Task) -> Description:
     if len(task.mechanisms) != 1:
-        told = 'must be one mechanism, of the library or a file: "four-bar", "leg.toml"'
-        task.refuse([(("mechanism",), told)])
+        message = 'must be one mechanism, of the library or a file: "four-bar", "leg.toml"'
+        task.refuse([(("mechanism",), message)])
     name = task.mechanisms[0]
     if name in examples():
         return read_text(example_text(name), f"{name}.toml").description
     if task.mechanism_text is None:
         known = choices("examples", examples(), name)
-        told = f'"{name}" is no file in the folder of the task and no example {known}'
-        task.refuse([(("mechanism",), told)])
+        message = f'"{name}" is no file in the folder of the task and no example {known}'
+        task.refuse([(("mechanism",), message)])
     assert task.mechanism_text is not None  # refused
     return read_text(task.mechanism_text, str((task.folder or Path()) / name)).description
 
@@ -150,13 +150,13 @@ def _driven(description: Description, task: Task) -> Description:
     driven, turn, model = description.inputs[0], description.angle.turn, model_of(description)
     kinds = {x.name: x.kind for x in model.equations.inputs}
     is_angle = kinds[driven.column] == Kind.ANGLE.value
-    told = ""
+    message = ""
     if wanted.turns_fully and not is_angle:
-        told = f'"{driven.column}" is a length, which cannot turn: give {{ from = …, to = … }}'
+        message = f'"{driven.column}" is a length, which cannot turn: give {{ from = …, to = … }}'
     if driven.law is not None:
-        told = "has no effect on a mechanism that is driven by a law of time: leave it out"
-    if told:
-        task.refuse([(("wanted", "input"), told)])
+        message = "has no effect on a mechanism that is driven by a law of time: leave it out"
+    if message:
+        task.refuse([(("wanted", "input"), message)])
     begin = 0.0 if driven.start is None else description.numbers(driven.start)
     start, stop = wanted.range or (begin, begin + turn)
     usual = turn / _ROWS if is_angle else abs(stop - start) / _PARTS
@@ -171,45 +171,45 @@ def _driven(description: Description, task: Task) -> Description:
 def _name_problems(model: Model, settings: Improvement) -> Problems:
     """Names that the mechanism does not have, or that cannot vary or be goals."""
     there, one = np.ones(1, dtype=bool), np.zeros(1)
-    asked: dict[tuple[str | int, ...], Callable[[], object]] = {}
+    lookups: dict[tuple[str | int, ...], Callable[[], object]] = {}
     for k, name in enumerate(settings.vary):
-        asked["vary", k] = partial(chosen_numbers, model, [name])
+        lookups["vary", k] = partial(chosen_numbers, model, [name])
     for name in settings.bounds:
-        asked["bounds", name] = partial(number_named, model.description, name)
+        lookups["bounds", name] = partial(number_named, model.description, name)
     for k, goal in enumerate(settings.goals):
-        asked["goals", k, "of"] = partial(goal_of, model, goal, one, there, 1.0)
+        lookups["goals", k, "of"] = partial(goal_of, model, goal, one, there, 1.0)
     if settings.point:
-        asked["point",] = partial(point_named, model, settings.point)
-    for key, ask in asked.items():
+        lookups["point",] = partial(point_named, model, settings.point)
+    for key, look_up in lookups.items():
         try:
-            ask()
+            look_up()
         except InputError as error:
-            told = str(error.args[0] if isinstance(error, KeyError) else error)
+            message = str(error.args[0] if isinstance(error, KeyError) else error)
             if key[0] == "vary" and not isinstance(error, KeyError):
                 free = [number.name for number in numbers_to_vary(model, ())]
-                told = f"{told} {choices('numbers that can vary', free)}"
-            yield ("improve", *key), told
+                message = f"{message} {choices('numbers that can vary', free)}"
+            yield ("improve", *key), message
 
 
 def _bounds(
     description: Description, task: Task, wishes: Wishes, numbers: Sequence[VariedNumber]
 ) -> dict[str, tuple[float, float]]:
-    """The bounds given, narrowed by those that are wanted; contradictions are refused."""
+    """The bounds of the settings, narrowed by [wanted]; contradictions are refused."""
     bounds, problems = dict((task.improvement or Improvement()).bounds), []
-    given = {number_named(description, name): pair for name, pair in bounds.items()}
-    for number, (low, high) in _wanted_bounds(description, wishes, numbers):
+    by_number = {number_named(description, name): pair for name, pair in bounds.items()}
+    for number, (low, high) in _bounds_of_task(description, wishes, numbers):
         name = next((n for n in bounds if number_named(description, n) == number), number.name)
-        least, most = given.get(number, (-math.inf, math.inf))
+        least, most = by_number.get(number, (-math.inf, math.inf))
         least, most = max(least, low), min(most, high)
         if least > most:
-            told = f"excludes {low:g} to {high:g}, which [wanted] asks for: widen one of them"
-            problems.append((("improve", "bounds", name), told))
+            message = f"excludes {low:g} to {high:g}, which [wanted] requires: widen one of them"
+            problems.append((("improve", "bounds", name), message))
         bounds[name] = least, most
     task.refuse(problems)
     return bounds
 
 
-def _wanted_bounds(
+def _bounds_of_task(
     description: Description, wishes: Wishes, numbers: Sequence[VariedNumber]
 ) -> Iterator[tuple[VariedNumber, tuple[float, float]]]:
     """Lengths, and the box around the region of fixed pivots."""
@@ -242,19 +242,19 @@ def _ill_timed(model: Model, task: Task) -> Problems:
     turns = model.equations.inputs[0].kind == Kind.ANGLE.value
     turn = model.description.angle.turn if turns else math.inf
     table = model.rows_in_file_units[:, 0]
-    for k, _, told in outside_range(inputs, table, turn):
-        yield ("positions", k, "input"), f"is {told}: move it, or widen [wanted] input"
+    for k, _, place in outside_range(inputs, table, turn):
+        yield ("positions", k, "input"), f"is {place}: move it, or widen [wanted] input"
     for k, goal in enumerate((task.improvement or Improvement()).goals):
-        for j, _, told in outside_range(goal.at, table, turn):
-            yield ("improve", "goals", k, "at", j), f"is {told}: move it, or widen [wanted] input"
+        for j, _, place in outside_range(goal.at, table, turn):
+            yield ("improve", "goals", k, "at", j), f"is {place}: move it, or widen [wanted] input"
 
 
 def _unreached(reach: Reach, name: str, points: Points) -> Problems:
     for k, place in enumerate(points.points):
         pivot, away, most = reach.missing(name, complex(*place))
         if pivot:
-            told = (
+            message = (
                 f"is {away:g} from {pivot}, out of reach: {name} comes at most {most:g} away from "
                 "it; widen the bounds of lengths or move the position"
             )
-            yield ("positions", k, "point"), told
+            yield ("positions", k, "point"), message

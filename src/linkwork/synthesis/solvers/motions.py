@@ -36,7 +36,7 @@ from linkwork.synthesis.poses.pose_families import (
     timed_dyads,
     with_misses,
 )
-from linkwork.synthesis.solvers.result import Found
+from linkwork.synthesis.solvers.result import SolvedTask
 from linkwork.synthesis.tasks.conditions import Wishes
 from linkwork.synthesis.tasks.task import Task
 
@@ -64,7 +64,7 @@ def poses_of(task: Task) -> tuple[ComplexArray, Array]:
     return points, angles * task.angle.radians
 
 
-def solve_motion(task: Task, wishes: Wishes) -> Found:
+def solve_motion(task: Task, wishes: Wishes) -> SolvedTask:
     """All designs through five poses, or a sample of the family through fewer."""
     points, angles = poses_of(task)
     _check_motion(task, points, angles)
@@ -85,14 +85,14 @@ def _check_motion(task: Task, points: ComplexArray, angles: Array) -> None:
     k = int(np.abs(turns - 1.0).argmax())
     if abs(turns[k] - 1.0) < _PARALLEL:
         if len(points) >= _MOST_PARALLEL:
-            told = "all have the same angle: the body only translates, and two guides (a PP dyad) "
-            told += "carry it through any such poses; no dyad with a pivot is determined"
-            raise _refused(task, "positions", told)
+            text = "all have the same angle: the body only translates, and two guides (a PP dyad) "
+            text += "carry it through any such poses; no dyad with a pivot is determined"
+            raise _refused(task, "positions", text)
         ways = points[1:] - points[0]
         off = abs((ways[-1] * ways[0].conj()).imag) / (np.abs(ways) ** 2).max()
         if len(ways) > 1 and not off > _PARALLEL:
-            told = "have one angle and lie on a line: a slider along it carries the body, and no "
-            raise _refused(task, "positions", f"{told}linkage is determined")
+            text = "have one angle and lie on a line: a slider along it carries the body, and no "
+            raise _refused(task, "positions", f"{text}linkage is determined")
         return
     if len(points) == 2 and points[0] != points[1]:
         return
@@ -101,8 +101,8 @@ def _check_motion(task: Task, points: ComplexArray, angles: Array) -> None:
     size = max(float(np.abs(points - points[0]).max()), abs(points[0] - pole))
     rounding = _ROUNDED * np.abs(points).max() / abs(turns[k] - 1.0)
     if np.abs(pole + (points[0] - pole) * turns - points).max() <= _PARALLEL * size + rounding:
-        told = f"all lie on a rotation about [{pole.real:.6g}, {pole.imag:.6g}]: a fixed pin there "
-        raise _refused(task, "positions", f"{told}carries the body, and no linkage is determined")
+        text = f"all lie on a rotation about [{pole.real:.6g}, {pole.imag:.6g}]: a fixed pin there "
+        raise _refused(task, "positions", f"{text}carries the body, and no linkage is determined")
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -118,28 +118,28 @@ class _Family:
 def _pairs(
     task: Task, dyads: DyadSet, poses: PoseSet, leading: int = 0
 ) -> tuple[list[Candidates], str]:
-    """The mechanisms of the kinds that the task names, and what is said of pairs that are none."""
-    made, told = pair_dyads(dyads, poses, leading), ""
-    asked = any(name in GUIDED for name in task.mechanisms)
-    if asked and leading:
-        told = "; given pivots and timing are those of cranks: no mechanisms of two guides are made"
-    elif asked:
+    """The mechanisms of the kinds that the task names, and a note on pairs that make none."""
+    made, note = pair_dyads(dyads, poses, leading), ""
+    guides_requested = any(name in GUIDED for name in task.mechanisms)
+    if guides_requested and leading:
+        note = "; given pivots and timing are those of cranks: no mechanisms of two guides are made"
+    elif guides_requested:
         guided, immobile = pair_guides(dyads, poses)
         made += guided
         if immobile:
-            told = f"; {immobile} pairs of guides are parallel or share a pivot: no such mechanism"
-    return [part for part in made if part.kind.value in task.mechanisms], told
+            note = f"; {immobile} pairs of guides are parallel or share a pivot: no such mechanism"
+    return [part for part in made if part.kind.value in task.mechanisms], note
 
 
-def _through_few(task: Task, wishes: Wishes, points: ComplexArray, angles: Array) -> Found:
-    """A sample of the family through the wanted poses, and with tolerances through others."""
+def _through_few(task: Task, wishes: Wishes, points: ComplexArray, angles: Array) -> SolvedTask:
+    """A sample of the family through the poses, and with tolerances through poses near them."""
     first = _family(task, wishes, points, angles)
-    pairs, told = _paired(task, first, points, angles)
+    pairs, note = _paired(task, first, points, angles)
     if is_tolerant(task):
         near = _near_pairs(task, wishes, points, angles)
         every = [pairs, *islice(near, max(0, _MOST_DESIGNS // max(1, sum(map(len, pairs))) - 1))]
-        told += (
-            f"; the same for {len(every)} tasks within the tolerances, the wanted one first"
+        note += (
+            f"; the same for {len(every)} tasks within the tolerances, the exact one first"
             if len(every) > 1
             else "; the poses are met exactly, and tolerances are not used"
         )
@@ -148,13 +148,13 @@ def _through_few(task: Task, wishes: Wishes, points: ComplexArray, angles: Array
             kept = with_misses(task, points, angles, part)
             whole.setdefault(part.kind, []).extend([] if kept is None else [kept])
         pairs = [Candidates.joined(parts) for parts in whole.values() if parts]
-    return Found(
+    return SolvedTask(
         candidates=tuple(pairs),
         complex=len(first.dyads),
         real=len(first.dyads),
         proved=int((first.dyads.refusal == Refusal.NONE.code).sum()),
         completeness=Completeness.SAMPLED,
-        message=first.message + told,
+        message=first.message + note,
         dyads=first.dyads,
         drives=(Drive.A0,) if first.timed else tuple(Drive),
     )
@@ -163,7 +163,7 @@ def _through_few(task: Task, wishes: Wishes, points: ComplexArray, angles: Array
 def _paired(
     task: Task, family: _Family, points: ComplexArray, angles: Array
 ) -> tuple[list[Candidates], str]:
-    """The mechanisms of a family through poses, and what is said of pairs that are none."""
+    """The mechanisms of a family through poses, and a note on pairs that make none."""
     poses = PoseSet(points=points[None], turns=np.exp(1j * angles)[None])
     return _pairs(task, family.dyads, poses, family.leading)
 
@@ -174,21 +174,21 @@ def _near_pairs(
     """The mechanisms through poses within the tolerances."""
     shift, turn = drawn_within(task, _TASKS)
     for near, turned in zip(points + shift[1:], angles + turn[1:], strict=True):
-        with suppress(MechanismError):  # given pivots may be off the curves of these poses
+        with suppress(MechanismError):  # given pivots may be off the curves of the near poses
             yield _paired(task, _family(task, wishes, near, turned), near, turned)[0]
 
 
-def _through_five(task: Task, points: ComplexArray, angles: Array) -> Found:
+def _through_five(task: Task, points: ComplexArray, angles: Array) -> SolvedTask:
     tasks = near_tasks(task, points, angles)
     solved = solve_five_poses(tasks.points, tasks.angles)
     chosen = PoseSet(points=tasks.points, turns=np.exp(1j * tasks.angles))
     dyads = DyadSet.of_solutions(solved, chosen)
     made = []
-    pairs, told = _pairs(task, dyads, chosen)
+    pairs, note = _pairs(task, dyads, chosen)
     for part in pairs:
         kept = with_misses(task, points, angles, part)
         made += [] if kept is None else [kept]
-    own = dyads.take(dyads.task == 0)
+    of_task = dyads.take(dyads.task == 0)
     first = solved.refusal[0]
     if (first == Refusal.FAMILY.code).all():
         grade, message = Completeness.CONTINUUM, Refusal.FAMILY.value
@@ -200,14 +200,14 @@ def _through_five(task: Task, points: ComplexArray, angles: Array) -> Found:
         message = "all dyads: four different solutions are proved, and there are no more"
     else:
         grade, message = Completeness.NOT_PROVED, Refusal.COINCIDENT.value
-    return Found(
+    return SolvedTask(
         candidates=tuple(made),
         complex=solved.x.shape[1],
-        real=len(own),
-        proved=int((own.refusal == Refusal.NONE.code).sum()),
+        real=len(of_task),
+        proved=int((of_task.refusal == Refusal.NONE.code).sum()),
         completeness=grade,
-        message=message + told,
-        dyads=own,
+        message=message + note,
+        dyads=of_task,
     )
 
 
@@ -230,23 +230,23 @@ def _family(task: Task, wishes: Wishes, points: ComplexArray, angles: Array) -> 
         inputs = np.array([position.input or 0.0 for position in task.positions])
         pivots = fixed[:1] if fixed.size else spread
         cranks = timed_dyads(pivots, points, turns, inputs * task.angle.radians)
-        own = [through_fixed(fixed[1:], points, turns)] if len(fixed) > 1 else free
+        second = [through_fixed(fixed[1:], points, turns)] if len(fixed) > 1 else free
         return _Family(
-            dyads=DyadSet.joined([cranks, *own]),
+            dyads=DyadSet.joined([cranks, *second]),
             leading=len(cranks),
             timed=True,
             message="a sample: the crank turns by the given angles, the other link is free",
         )
     given = [through_fixed(fixed, points, turns)] if fixed.size else []
     given += [through_moving(moving, points, turns)] if moving.size else []
-    pivots_given = len(fixed) + len(moving)
-    if pivots_given == 2 and count == 3:
+    count_given = len(fixed) + len(moving)
+    if count_given == 2 and count == 3:
         return _Family(dyads=DyadSet.joined(given), message="the one four-bar with these pivots")
     parallel = count > 2 and bool(np.abs(turns - turns[0]).max() < _PARALLEL)
     parallel &= "four-bar" in task.mechanisms
     return _Family(
-        dyads=DyadSet.joined([*given, *free]) if pivots_given < 2 else DyadSet.joined(given),
-        leading=sum(map(len, given)) if pivots_given == 1 else 0,
+        dyads=DyadSet.joined([*given, *free]) if count_given < 2 else DyadSet.joined(given),
+        leading=sum(map(len, given)) if count_given == 1 else 0,
         message=f"a sample of the family through {count} poses" + parallel * _PARALLELOGRAMS,
     )
 
@@ -264,25 +264,25 @@ def _through_four(
 ) -> _Family:
     turns = np.exp(1j * angles)
     curve = centre_points(points, angles)
-    given = []
+    through = []
     if fixed.size:
         _check_on_curve(task, "fixed_pivots", fixed, curve, points, (0j, 1.0 + 0j))
-        given.append(_determined(task, "fixed_pivots", fixed, points, angles))
+        through.append(_determined(task, "fixed_pivots", fixed, points, angles))
     # the body sees the fixed pivots move: its circle points are centre points of that motion
     body = centre_points(inverted(points, turns)[0], -angles)
     if moving.size:
         _check_on_curve(task, "moving_pivots", moving, body, points, (points[0], turns[0]))
-        own = _determined(task, "moving_pivots", moving, inverted(points, turns)[0], -angles)
-        given.append(replace(own, moving=own.fixed, fixed=own.moving))
+        turned = _determined(task, "moving_pivots", moving, inverted(points, turns)[0], -angles)
+        through.append(replace(turned, moving=turned.fixed, fixed=turned.moving))
     free = [sampled_dyads(points, angles), sliding_dyad(points, angles)]
     number = len(fixed) + len(moving)
     arcs = () if curve is None else curve.arcs
     proved = "proved" if curve is not None and all(arc.proved for arc in arcs) else "unproved"
     return _Family(
-        dyads=DyadSet.joined(given if number > 1 else [*given, *free]),
-        leading=sum(map(len, given)) if number == 1 else 0,
+        dyads=DyadSet.joined(through if number > 1 else [*through, *free]),
+        leading=sum(map(len, through)) if number == 1 else 0,
         message=f"a sample of dyads along the centre-point curve: {len(arcs)} {proved} "
-        f"arc{'' if len(arcs) == 1 else 's'}{_moved(fixed, moving, given, points)}",
+        f"arc{'' if len(arcs) == 1 else 's'}{_moved(fixed, moving, through, points)}",
     )
 
 
@@ -291,23 +291,23 @@ def _determined(
 ) -> DyadSet:
     """The dyads of given pivots, fixed in the frame of these poses, through all four of them."""
     reach = 4.0 * _ON_CURVE * float(np.abs(points - points.mean()).max())
-    found = dyads_with_pivots(pivots, points, angles, reach)
-    if len(found) == len(pivots):
-        return found
-    unmatched = [k for k, p in enumerate(pivots) if not (np.abs(found.fixed - p) < reach).any()]
-    told = "determines no dyad: the body turns about it from one pose to another"
-    raise _refused(task, "given", told, key, unmatched[0] if unmatched else 0)
+    dyads = dyads_with_pivots(pivots, points, angles, reach)
+    if len(dyads) == len(pivots):
+        return dyads
+    unmatched = [k for k, p in enumerate(pivots) if not (np.abs(dyads.fixed - p) < reach).any()]
+    message = "determines no dyad: the body turns about it from one pose to another"
+    raise _refused(task, "given", message, key, unmatched[0] if unmatched else 0)
 
 
 def _moved(
-    fixed: ComplexArray, moving: ComplexArray, given: Sequence[DyadSet], points: ComplexArray
+    fixed: ComplexArray, moving: ComplexArray, sets: Sequence[DyadSet], points: ComplexArray
 ) -> str:
-    """How far given pivots are off their curves, on which those of the proved designs are."""
-    wanted = [(x, name) for x, name in ((fixed, "fixed"), (moving, "moving")) if len(x)]
+    """A note how far the given pivots were moved onto their curves."""
+    pivots = [(x, name) for x, name in ((fixed, "fixed"), (moving, "moving")) if len(x)]
     away = max(
         (
             float(np.abs(getattr(dyads, name) - x).max())
-            for (x, name), dyads in zip(wanted, given, strict=True)
+            for (x, name), dyads in zip(pivots, sets, strict=True)
         ),
         default=0.0,
     )
@@ -331,8 +331,8 @@ def _check_on_curve(
     size, (origin, turn) = float(np.abs(points - points.mean()).max()), frame
     name = "centre-point" if key == "fixed_pivots" else "circle-point"
     if curve is None:
-        told = f"are not made for four poses of which three are parallel: the {name} curve is no "
-        raise _refused(task, "given", f"{told}cubic; leave them out", key)
+        text = f"are not made for four poses of which three are parallel: the {name} curve is no "
+        raise _refused(task, "given", f"{text}cubic; leave them out", key)
     for k, pivot in enumerate(pivots):
         near = curve.points(np.angle([pivot - curve.pole]))[0]
         if (np.abs(near - pivot) < _ON_CURVE * size).any():
@@ -340,8 +340,8 @@ def _check_on_curve(
         sampled = curve.points(np.linspace(0.0, np.pi, _CURVE_SAMPLES))
         sampled = np.concatenate([near, sampled.ravel()])
         best = origin + turn * sampled[np.nanargmin(np.abs(sampled - pivot))]
-        told = f"is not on the {name} curve of the four poses; the nearest point of it is about "
-        raise _refused(task, "given", f"{told}[{best.real:.6g}, {best.imag:.6g}]", key, k)
+        text = f"is not on the {name} curve of the four poses; the nearest point of it is about "
+        raise _refused(task, "given", f"{text}[{best.real:.6g}, {best.imag:.6g}]", key, k)
 
 
 def _refused(task: Task, table: str, message: str, *key: str | int) -> MechanismError:

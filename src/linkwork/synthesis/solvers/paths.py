@@ -14,11 +14,11 @@ from linkwork.core.foundation.statuses import Completeness
 from linkwork.synthesis.loops.candidates import Candidates, LoopKind
 from linkwork.synthesis.poses.pose_families import drawn_within, is_tolerant
 from linkwork.synthesis.precision.four_bar_positions import FourBarPositions
-from linkwork.synthesis.precision.given_lengths import four_bars_with_lengths, own_member
+from linkwork.synthesis.precision.given_lengths import four_bars_with_lengths, solved_member
 from linkwork.synthesis.precision.positions import GivenLength, PrecisionPositions
 from linkwork.synthesis.precision.sampling import positions_with_samples
 from linkwork.synthesis.precision.solving import PrecisionFourBars, four_bars_through
-from linkwork.synthesis.solvers.result import Found
+from linkwork.synthesis.solvers.result import SolvedTask
 from linkwork.synthesis.tasks.conditions import Wishes
 from linkwork.synthesis.tasks.task import MECHANISMS, Task
 
@@ -37,11 +37,11 @@ _GRADES = {
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class _Near:
-    """Positions within the tolerances, tasks with eight conditions that contain them, what solves
-    these, and further tasks where conditions are drawn.
+    """Positions within the tolerances, tasks with eight conditions that contain them, the solved
+    four-bars, and further tasks where conditions are drawn.
     """
 
-    given: PrecisionPositions
+    positions: PrecisionPositions
     tasks: tuple[PrecisionPositions, ...]
     further: Iterator[PrecisionPositions]
     solved: list[PrecisionFourBars] = field(default_factory=list)
@@ -52,7 +52,7 @@ def solve_path(
     wishes: Wishes,
     progress: Callable[[float], None] | None,
     sound: Callable[[Candidates], int],
-) -> Found:
+) -> SolvedTask:
     """All four-bars for eight conditions, or those of a sample of tasks with fewer.
 
     ``sound`` counts the sound designs of candidates: too few of them are worth a larger sample.
@@ -69,29 +69,29 @@ def solve_path(
     ]
     near = list(_near(task, points, wishes, lengths))
     _check_lengths(task, lengths, near[0])
-    told = _Told(progress)
+    share = _SharedProgress(progress)
     member, reason = None, ""
     if near[0].tasks[0].lengths:
-        own = own_member(near[0].tasks[0].problem, told.part(1 + len(near)))
-        member, reason = own.member, own.reason and f"; {own.reason}"
+        result = solved_member(near[0].tasks[0].problem, share.part(1 + len(near)))
+        member, reason = result.member, result.reason and f"; {result.reason}"
         if member is None:
             near = list(_near(task, points, wishes, lengths, drawn=True))
     fits = bool(lengths) and member is None
     count = sum(len(part.tasks) for part in near)
     for part in near:
-        for given in part.tasks:
-            follow = told.part(count + fits * len(near))
+        for positions in part.tasks:
+            follow = share.part(count + fits * len(near))
             part.solved.append(
-                four_bars_through(given, member=member, alike=count, progress=follow)
+                four_bars_through(positions, member=member, alike=count, progress=follow)
             )
             count -= 1
     if fits:
-        return _fitted(task, points, near, told, reason)
+        return _fitted(task, points, near, share, reason)
     if len(near) == 1:
-        _solve_further(task, points, near[0], told, sound)
-    solved = [found for part in near for found in part.solved]
+        _solve_further(task, points, near[0], share, sound)
+    solved = [four_bars for part in near for four_bars in part.solved]
     grade, message = _completeness(solved, near)
-    return Found(
+    return SolvedTask(
         candidates=_candidates(points, solved),
         complex=sum(len(part.roots.x) for part in solved),
         real=sum(part.real for part in solved),
@@ -106,36 +106,36 @@ def _solve_further(
     task: Task,
     points: ComplexArray,
     near: _Near,
-    told: _Told,
+    share: _SharedProgress,
     sound: Callable[[Candidates], int],
 ) -> None:
     """Solve further tasks with drawn conditions until enough designs are sound, within a bound."""
-    wanted = task.rank.deliver - sum(map(sound, _candidates(points, near.solved)))
+    missing = task.rank.deliver - sum(map(sound, _candidates(points, near.solved)))
     most = _PATHS if find_spec("numba") else _SLOW_PATHS
     while (
-        wanted > 0
-        and sum(found.roots.paths for found in near.solved) < most
+        missing > 0
+        and sum(four_bars.roots.paths for four_bars in near.solved) < most
         and (tasks := tuple(islice(near.further, _SAMPLES)))
     ):
         left = _MOST - len(near.solved)
         more = [
-            four_bars_through(given, alike=left - k, progress=told.part(left - k))
-            for k, given in enumerate(tasks)
+            four_bars_through(positions, alike=left - k, progress=share.part(left - k))
+            for k, positions in enumerate(tasks)
         ]
         near.solved.extend(more)
-        wanted -= sum(map(sound, _candidates(points, more)))
+        missing -= sum(map(sound, _candidates(points, more)))
 
 
 def _fitted(
-    task: Task, points: ComplexArray, near: Sequence[_Near], told: _Told, reason: str
-) -> Found:
-    """A sample of four-bars with given lengths, from those of tasks without them."""
+    task: Task, points: ComplexArray, near: Sequence[_Near], share: _SharedProgress, reason: str
+) -> SolvedTask:
+    """A sample of four-bars with given lengths, from the four-bars of tasks without lengths."""
     fitted = [
-        four_bars_with_lengths(part.given, part.solved, told.part(len(near) - k))
+        four_bars_with_lengths(part.positions, part.solved, share.part(len(near) - k))
         for k, part in enumerate(near)
     ]
     number, tasks = sum(map(len, fitted)), sum(len(part.tasks) for part in near)
-    return Found(
+    return SolvedTask(
         candidates=_candidates(points, fitted),
         complex=number,
         real=number,
@@ -147,14 +147,14 @@ def _fitted(
     )
 
 
-class _Told:
-    """Progress of parts of the work, each of which takes its share of what is left."""
+class _SharedProgress:
+    """Progress of parts of the work, each of which takes its share of the rest."""
 
     def __init__(self, progress: Callable[[float], None] | None) -> None:
         self._progress, self._done = progress, 0.0
 
     def part(self, left: int) -> Callable[[float], None] | None:
-        """What the first of ``left`` equal parts is to be told; the one before is done."""
+        """The progress function of the first of ``left`` equal parts; earlier parts are done."""
         if self._progress is None:
             return None
         begin = self._done
@@ -176,7 +176,7 @@ def _near(
     *,
     drawn: bool = False,
 ) -> Iterator[_Near]:
-    """The wanted positions, and a sample of others within their tolerances.
+    """The positions of the task, and a sample of positions within their tolerances.
 
     ``drawn``: conditions are drawn in place of the lengths, also where these determine the rest.
     """
@@ -191,10 +191,10 @@ def _near(
     shifts, turns = drawn_within(task, _NEAR if tolerant else 1, np.random.default_rng(_SEED))
     most, samples = (1, 1) if tolerant else (_MOST, _SAMPLES)
     for shift, turn in zip(shifts, turns, strict=True):
-        own, turned = points + shift, angles + turn
-        drawn_tasks = positions_with_samples(own, turned, pivots, most, rng, region, known)
+        moved, turned = points + shift, angles + turn
+        drawn_tasks = positions_with_samples(moved, turned, pivots, most, rng, region, known)
         yield _Near(
-            given=PrecisionPositions.of(own, turned, pivots, lengths),
+            positions=PrecisionPositions.of(moved, turned, pivots, lengths),
             tasks=tuple(islice(drawn_tasks, samples)),
             further=drawn_tasks,
         )
@@ -207,27 +207,27 @@ def _check_lengths(task: Task, lengths: Sequence[GivenLength], near: _Near) -> N
     ------
     MechanismError
     """
-    freedoms = near.given.problem.freedoms + len(lengths)
+    freedoms = near.positions.problem.freedoms + len(lengths)
     if len(lengths) > freedoms:
-        told = f"are {len(lengths)}, but positions and pivots leave {freedoms} freedoms"
-        task.refuse([(("given", "lengths"), f"{told}: leave some out")])
+        message = f"are {len(lengths)}, but positions and pivots leave {freedoms} freedoms"
+        task.refuse([(("given", "lengths"), f"{message}: leave some out")])
 
 
 def _candidates(points: ComplexArray, solved: Sequence[FourBarPositions]) -> tuple[Candidates, ...]:
     return tuple(
         Candidates(
             kind=LoopKind.FOUR_BAR,
-            fixed_a=found.fixed_a,
-            fixed_b=found.fixed_b,
-            direction=np.zeros(len(found), dtype=complex),
-            moving_a=found.moving_a,
-            moving_b=found.moving_b,
-            guided=found.guided,
-            error=found.error,
-            miss=np.abs(found.guided - points).max(axis=1),
+            fixed_a=four_bars.fixed_a,
+            fixed_b=four_bars.fixed_b,
+            direction=np.zeros(len(four_bars), dtype=complex),
+            moving_a=four_bars.moving_a,
+            moving_b=four_bars.moving_b,
+            guided=four_bars.guided,
+            error=four_bars.error,
+            miss=np.abs(four_bars.guided - points).max(axis=1),
         )
-        for found in solved
-        if len(found)
+        for four_bars in solved
+        if len(four_bars)
     )
 
 
@@ -239,24 +239,24 @@ def _of_four_bars(task: Task) -> str:
     return f"; no {' or '.join(others)}: points are solved for four-bars only"
 
 
-def _proved(found: PrecisionFourBars) -> int:
+def _proved(four_bars: PrecisionFourBars) -> int:
     """The number of real solutions that are proved with all their cognates."""
-    return found.real - len(np.unique(found.triple[~found.proved]))
+    return four_bars.real - len(np.unique(four_bars.triple[~four_bars.proved]))
 
 
 def _completeness(
     solved: Sequence[PrecisionFourBars], near: Sequence[_Near]
 ) -> tuple[Completeness, str]:
     if len(solved) > 1:
-        drawn = near[0].given.problem.freedoms > 0
-        told = " within the tolerances" if len(near) > 1 else ""
-        told += ", in which the missing conditions were drawn" if drawn else ""
-        return Completeness.SAMPLED, f"a sample: {len(solved)} tasks{told}"
+        drawn = near[0].positions.problem.freedoms > 0
+        text = " within the tolerances" if len(near) > 1 else ""
+        text += ", in which the missing conditions were drawn" if drawn else ""
+        return Completeness.SAMPLED, f"a sample: {len(solved)} tasks{text}"
     roots, grade = solved[0].roots, solved[0].completeness
     closed = "" if roots.closed is None else "closed" if roots.closed else "not closed"
-    told = _GRADES.get(grade, grade.value)
+    text = _GRADES.get(grade, grade.value)
     message = (
-        f"{told} ({roots.paths} paths, {roots.at_infinity} to infinity, {roots.lost_paths}"
+        f"{text} ({roots.paths} paths, {roots.at_infinity} to infinity, {roots.lost_paths}"
         f"{closed and f'; {closed} under conjugation'})"
     )
     return grade, message

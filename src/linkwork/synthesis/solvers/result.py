@@ -34,28 +34,28 @@ _NONE = Wishes()
 #: Defects that are wishes of the task, not properties of its positions: their words, and the wishes
 #: without them.
 _WISHES: dict[DefectKind, tuple[str, Callable[[Wishes], Wishes]]] = {
-    DefectKind.ORDER: ("the order as given", lambda own: replace(own, ordered=False)),
-    DefectKind.RANGE: ("the driven range", lambda own: replace(own, range=None)),
+    DefectKind.ORDER: ("the order as given", lambda wishes: replace(wishes, ordered=False)),
+    DefectKind.RANGE: ("the driven range", lambda wishes: replace(wishes, range=None)),
     DefectKind.TRANSMISSION: (
         "the least transmission angle",
-        lambda own: replace(own, transmission=0.0),
+        lambda wishes: replace(wishes, transmission=0.0),
     ),
     DefectKind.PIVOTS: (
         "the region of fixed pivots",
-        lambda own: replace(own, region=_NONE.region),
+        lambda wishes: replace(wishes, region=_NONE.region),
     ),
     DefectKind.LENGTHS: (
         "the bounds of lengths",
-        lambda own: replace(own, shortest=0.0, longest=np.inf, ratio=np.inf),
+        lambda wishes: replace(wishes, shortest=0.0, longest=np.inf, ratio=np.inf),
     ),
     DefectKind.TOLERANCE: (
         "the tolerances",
-        lambda own: replace(own, points=_NONE.points, reach=_NONE.reach),
+        lambda wishes: replace(wishes, points=_NONE.points, reach=_NONE.reach),
     ),
-    DefectKind.OBSTACLE: ("clear_of", lambda own: replace(own, obstacles=_NONE.obstacles)),
+    DefectKind.OBSTACLE: ("clear_of", lambda wishes: replace(wishes, obstacles=_NONE.obstacles)),
 }
 _COUNTS = ("complex", "real", "proved", "triples", "linkages", "starts", "interrupted")
-_MOST_JUDGED = 3  # sets of wishes that are left out to see what they cost
+_MOST_JUDGED = 3  # sets of requirements that are left out to count the designs that they reject
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -104,11 +104,11 @@ class Dyad:
 class JudgedDesigns:
     """Designs of one kind with one driven link, and the verdicts on them.
 
-    ``zero``, one of ``zeros``, and ``output`` are those of :class:`Found`.
+    ``zero``, one of ``zeros``, and ``output`` are those of :class:`SolvedTask`.
     """
 
     task: Task
-    given: Candidates
+    candidates: Candidates
     drive: Drive
     wishes: Wishes
     verdicts: Verdicts
@@ -153,7 +153,7 @@ class SynthesizedDesign(JudgedDesign):
     @property
     def mechanism(self) -> str:
         """The kind of mechanism."""
-        return self.group.given.kind.value
+        return self.group.candidates.kind.value
 
     @property
     def points(self) -> dict[str, complex]:
@@ -163,14 +163,14 @@ class SynthesizedDesign(JudgedDesign):
     @cached_property
     def kinds(self) -> tuple[DefectKind, ...]:
         """The kinds of its defects; none for a sound design."""
-        found = self.group.verdicts.found
-        return tuple(kind for kind, wrong in found.items() if wrong[self.index])
+        defects = self.group.verdicts.defects
+        return tuple(kind for kind, wrong in defects.items() if wrong[self.index])
 
     @cached_property
     def defects(self) -> tuple[Defect, ...]:
         """Its defects in words; none for a sound design."""
         group = self.group
-        return defects_of(group.task, group.given, group.drive, group.verdicts, self.index)
+        return defects_of(group.task, group.candidates, group.drive, group.verdicts, self.index)
 
     @property
     def transmission(self) -> float:
@@ -193,7 +193,7 @@ class SynthesizedDesign(JudgedDesign):
     @property
     def error(self) -> float:
         """How far positions are missed, the largest distance, or the structural error."""
-        miss = float(self.group.given.miss[self.index])
+        miss = float(self.group.candidates.miss[self.index])
         return self.group.task.angle.from_radians(miss) if self._is_rocker else miss
 
     @property
@@ -215,7 +215,7 @@ class SynthesizedDesign(JudgedDesign):
         ends = inputs[[0, -1]]
         if not self.kinds:
             ends = np.array([travel.first[k], travel.last[k]]) + loops.origin[k]
-        return Design.of(group.given, k, group.drive, inputs, ends, group.zero)
+        return Design.of(group.candidates, k, group.drive, inputs, ends, group.zero)
 
     @property
     def inputs(self) -> tuple[float, ...]:
@@ -256,7 +256,7 @@ class Synthesis:
     interrupted : bool
         Whether the user stopped it; the designs are the best so far.
     what_helps : callable
-        Tries other tasks; which of them has sound designs, in words, or "".
+        Tries other tasks and says which of them has sound designs; "" if none has.
     """
 
     task: Task
@@ -275,7 +275,7 @@ class Synthesis:
 
     @cached_property
     def helpful_change(self) -> str:
-        """A change of the task that has sound designs, in words; tried when first asked for."""
+        """A change of the task that gives sound designs, in words; evaluated at first use."""
         return self.what_helps()
 
     @property
@@ -305,9 +305,9 @@ class Synthesis:
         return {kind: counts[kind] for kind in DefectKind if counts[kind]}
 
     @cached_property
-    def costliest(self) -> tuple[str, int] | None:
-        """The wish without which most of the refused designs would be sound, and their number;
-        several wishes together if no design breaks one alone.
+    def most_restrictive(self) -> tuple[str, int] | None:
+        """The requirement that rejects the most designs, and how many would be sound without it;
+        several requirements together if no design breaks one alone.
         """
         wishes, wanted = {*_WISHES}, self.task.wanted
         if not wanted.turns_fully and wanted.range is None:
@@ -325,22 +325,22 @@ class Synthesis:
         return None
 
     def _sound_without(self, kinds: tuple[DefectKind, ...]) -> int:
-        """How many of the refused designs would be sound without some wishes.
+        """How many of the rejected designs would be sound without some requirements.
 
-        Loops are judged anew: without a driven range another one counts, and obstacles are noted of
-        designs with few other defects only.
+        Loops are judged anew: without a driven range another one applies, and obstacles are
+        checked only for designs with few other defects.
         """
-        own = [d for d in self.refused if {*kinds} & {*d.kinds} and _WISHES.keys() >= {*d.kinds}]
-        loops = [design for design in own if isinstance(design, SynthesizedDesign)]
+        judged = [d for d in self.refused if {*kinds} & {*d.kinds} and _WISHES.keys() >= {*d.kinds}]
+        loops = [design for design in judged if isinstance(design, SynthesizedDesign)]
         if not loops:
-            return sum(design.kinds == kinds for design in own)
+            return sum(design.kinds == kinds for design in judged)
         count = 0
         for group in {id(design.group): design.group for design in loops}.values():
             index = np.array([design.index for design in loops if design.group is group])
             without = group.wishes
             for kind in kinds:
                 without = _WISHES[kind][1](without)
-            count += int(judge(group.given.take(index), group.drive, without).sound.sum())
+            count += int(judge(group.candidates.take(index), group.drive, without).sound.sum())
         return count
 
     def __repr__(self) -> str:
@@ -355,9 +355,9 @@ class Synthesis:
         ]
         if not self.delivered and self.designs:
             rows += [(kind.value, str(count)) for kind, count in self.defects.items()]
-            if self.costliest is not None:
-                wish, count = self.costliest
-                rows.append(("costliest wish", f"{wish}: without it {count} would be sound"))
+            if self.most_restrictive is not None:
+                wish, count = self.most_restrictive
+                rows.append(("most restrictive", f"{wish}: without it {count} would be sound"))
         return str(Summary(f"Synthesis of {self.task.name}", tuple(rows)))
 
     @property
@@ -368,7 +368,7 @@ class Synthesis:
     def to_dict(self, files: Mapping[int, str] | None = None) -> dict[str, Any]:
         """Plain data, as in the command line's JSON; ``files`` of designs by their place."""
         named = files or {}
-        cost = self.costliest
+        cost = self.most_restrictive
         return {
             "task": self.task.name,
             "kind": self.task.kind,
@@ -378,7 +378,7 @@ class Synthesis:
             "delivered": len(self.delivered),
             "sound": self.sound,
             "defects": {kind.name.lower(): count for kind, count in self.defects.items()},
-            "costliest": None if cost is None else {"wish": cost[0], "designs": cost[1]},
+            "most_restrictive": None if cost is None else {"wish": cost[0], "designs": cost[1]},
             "dyads": [dyad.to_dict() for dyad in self.dyads],
             "designs": [design.to_dict(named.get(k)) for k, design in enumerate(self.designs)],
         }
@@ -391,7 +391,7 @@ class Synthesis:
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
-class Found:
+class SolvedTask:
     """The designs that solve a task, before their defects are known.
 
     Parameters
@@ -444,12 +444,12 @@ class Found:
 _POINTS = ("A0", "B0", "C0", "S", "T", "U", "V", "A", "B", "C", "D", "K", "P")
 
 
-def designs_table(found: Synthesis, files: Mapping[int, str] | None = None) -> Table:
+def designs_table(synthesis: Synthesis, files: Mapping[int, str] | None = None) -> Table:
     """Designs in their order: numbers, points at the first position, verdict and file.
 
     Points that a kind of mechanism does not have are NaN.
     """
-    task, designs = found.task, found.designs
+    task, designs = synthesis.task, synthesis.designs
     columns: dict[str, AnyArray] = {
         "design": np.arange(1, len(designs) + 1),
         "mechanism": np.array([design.mechanism for design in designs]),
@@ -461,7 +461,7 @@ def designs_table(found: Synthesis, files: Mapping[int, str] | None = None) -> T
         "score": ("", [design.score for design in designs]),
         TRANSMISSION_ANGLE.word: (task.angle.value, [design.transmission for design in designs]),
         "size": (task.length, [design.size for design in designs]),
-        "error": (found.error_unit, [design.error for design in designs]),
+        "error": (synthesis.error_unit, [design.error for design in designs]),
     }
     for name, misses in goal_misses(designs).items():
         numbers[f"miss of {name}"] = "", misses
@@ -479,10 +479,10 @@ def designs_table(found: Synthesis, files: Mapping[int, str] | None = None) -> T
     return Table(columns=columns, units=units, index="design")
 
 
-def front_of(found: Synthesis) -> dict[str, list[float]]:
+def front_of(synthesis: Synthesis) -> dict[str, list[float]]:
     """The misses of every goal of the delivered designs; none if they are no front."""
-    improvement = found.task.improvement
-    return goal_misses(found.delivered) if improvement is not None and improvement.front else {}
+    improvement = synthesis.task.improvement
+    return goal_misses(synthesis.delivered) if improvement is not None and improvement.front else {}
 
 
 def goal_misses(designs: Sequence[JudgedDesign]) -> dict[str, list[float]]:
@@ -492,10 +492,10 @@ def goal_misses(designs: Sequence[JudgedDesign]) -> dict[str, list[float]]:
 
 
 def relative_misses(design: JudgedDesign) -> dict[str, float]:
-    """The misses of the goals of an improved design, each relative to the largest value wanted."""
+    """The misses of the goals of an improved design, each relative to its largest target."""
     improvement = design.task.improvement
-    goals = [] if improvement is None else [own for own in improvement.goals if not own.is_bound]
-    sizes = [max(map(abs, (*own.values, own.target or 0.0))) for own in goals]
+    goals = [] if improvement is None else [goal for goal in improvement.goals if not goal.is_bound]
+    sizes = [max(map(abs, (*goal.values, goal.target or 0.0))) for goal in goals]
     usual = max(sizes, default=0.0) or 1.0
     # points are the first of all misses, and no goal
     misses = list(design.goals.items())[-len(goals) :] if goals else []

@@ -34,8 +34,8 @@ from linkwork.synthesis.solvers.motions import solve_motion
 from linkwork.synthesis.solvers.paths import solve_path
 from linkwork.synthesis.solvers.result import (
     Dyad,
-    Found,
     JudgedDesigns,
+    SolvedTask,
     Synthesis,
     SynthesizedDesign,
     goal_misses,
@@ -54,13 +54,13 @@ _LEGS = ("A", "A0", "B", "B0")
 _Pair = tuple[SynthesizedDesign, SynthesizedDesign]
 
 
-def alike_among(found: Synthesis) -> Iterator[str]:
+def alike_among(synthesis: Synthesis) -> Iterator[str]:
     """The groups of delivered loops that are alike, in words."""
-    loops = [design for design in found.of_loops if design.delivered]
+    loops = [design for design in synthesis.of_loops if design.delivered]
     images = list(_images(loops))
     # of a symmetric curve a cognate may be the mirror image, which has the same links
     others = [pair for pair in _cognates(loops) if pair not in images]
-    for told, pairs in (
+    for title, pairs in (
         ("Cognates draw one curve with different links", others),
         ("The same links in different places", images),
     ):
@@ -71,7 +71,7 @@ def alike_among(found: Synthesis) -> Iterator[str]:
             groups = [g for g in groups if g not in joined] + [pair.union(*joined)]
         shown = [", ".join(map(str, sorted(group))) for group in sorted(groups, key=min)]
         if shown:
-            yield f"{told}: designs {'; '.join(shown)}."
+            yield f"{title}: designs {'; '.join(shown)}."
 
 
 def _cognates(loops: Sequence[SynthesizedDesign]) -> Iterator[_Pair]:
@@ -82,9 +82,9 @@ def _cognates(loops: Sequence[SynthesizedDesign]) -> Iterator[_Pair]:
     linkages = np.stack([legs, legs.conj()], axis=2).reshape(-1, 8)
     for k, one in enumerate(loops):
         rest = slice(k + 1, None)
-        wanted = np.array([linkages[rest], exchange_legs(linkages[rest])])
-        own = np.array(cognates(linkages[k : k + 1]))[:, None]
-        away = np.abs(own - wanted).max(axis=3).min(axis=(0, 1))
+        others = np.array([linkages[rest], exchange_legs(linkages[rest])])
+        of_linkage = np.array(cognates(linkages[k : k + 1]))[:, None]
+        away = np.abs(of_linkage - others).max(axis=3).min(axis=(0, 1))
         away = np.maximum(away, np.abs(places[rest, 4] - places[k, 4]))
         near = away <= _ALIKE * np.minimum(sizes[rest], sizes[k])
         yield from ((one, loops[k + 1 + int(i)]) for i in np.flatnonzero(near))
@@ -106,38 +106,38 @@ def _images(loops: Sequence[SynthesizedDesign]) -> Iterator[_Pair]:
 
 #: Handbooks ask for 40 deg or more; below 30 deg friction jams many mechanisms.
 _LEAST_TRANSMISSION = 30.0  # [deg]
-_MISSED = 1e-6  # of what is wanted: a goal that is not met
+_MISSED = 1e-6  # of the target: a goal that is not met
 _AT_BOUND = 0.999  # of the longest link
 _MOVING = (DefectKind.CIRCUIT, DefectKind.BRANCH, DefectKind.ORDER)
 
 
-def remarks_on(found: Synthesis) -> tuple[str, ...]:
-    """What is doubtful about delivered designs, and the wishes that refuse these.
+def remarks_on(result: Synthesis) -> tuple[str, ...]:
+    """Remarks on doubtful delivered designs, and the requirements that would reject them.
 
-    A task that states a wish gets no remark about it.
+    A task that states a requirement gets no remark about it.
     """
-    counts = [(sum(map(doubt.concerns, found.delivered)), doubt) for doubt in _doubts(found.task)]
+    counts = [(sum(map(doubt.concerns, result.delivered)), doubt) for doubt in _doubts(result.task)]
     doubts = (
         f"Delivered designs with {doubt.what}: {count}. {doubt.wish} refuses them."
         for count, doubt in counts
         if count
     )
-    return (*doubts, *_missed_goals(found), *alike_among(found))
+    return (*doubts, *_missed_goals(result), *alike_among(result))
 
 
-def _missed_goals(found: Synthesis) -> Iterator[str]:
+def _missed_goals(synthesis: Synthesis) -> Iterator[str]:
     """The goals that no delivered design comes near, with the smallest miss; of fronts none."""
-    if found.task.improvement is None or found.task.improvement.front:
+    if synthesis.task.improvement is None or synthesis.task.improvement.front:
         return
-    shares = [relative_misses(design) for design in found.delivered]
-    for name, misses in goal_misses(found.delivered).items():
-        share = min((own.get(name, 0.0) for own in shares), default=0.0)
+    shares = [relative_misses(design) for design in synthesis.delivered]
+    for name, misses in goal_misses(synthesis.delivered).items():
+        share = min((by_goal.get(name, 0.0) for by_goal in shares), default=0.0)
         if share > _MISSED:
             yield f"Every delivered design misses {name} by {min(misses):.4g} or more."
 
 
 def remark_on(design: JudgedDesign) -> str:
-    """What is doubtful about a sound design, and the wish that refuses it; "" if nothing is."""
+    """A remark on a doubtful sound design, with what would reject it; "" for none."""
     if design.kinds:
         return ""
     doubts = (doubt for doubt in _doubts(design.task) if doubt.concerns(design))
@@ -162,9 +162,9 @@ def _doubts(task: Task) -> Iterator[_Doubt]:
     if (wanted.shortest, wanted.longest, wanted.ratio) == (0.0, math.inf, math.inf):
         usual = has_usual_ratio(task)
         bound = USUAL_RATIO * (_AT_BOUND if usual else 1.0)
-        told, ratio = ("at the default bound,", "…") if usual else ("over", f"{USUAL_RATIO:g}")
+        over, ratio = ("at the default bound,", "…") if usual else ("over", f"{USUAL_RATIO:g}")
         yield _Doubt(
-            f"a longest link {told} {USUAL_RATIO:g} times the shortest",
+            f"a longest link {over} {USUAL_RATIO:g} times the shortest",
             f"[wanted] lengths = {{ ratio = {ratio} }}",
             lambda design: design.size > bound * design.shortest,
         )
@@ -177,59 +177,59 @@ def _doubts(task: Task) -> Iterator[_Doubt]:
         )
 
 
-def advice_of(found: Synthesis) -> str:
-    """What could be changed in a task without a sound design that no relaxed wish would help, or
-    what is attained of one; of a function also what else helps, which is tried. "" if there is a
-    sound design.
+def advice_of(synthesis: Synthesis) -> str:
+    """Advice for a task without a sound design: a change that helps, or how near designs come to
+    the most restrictive requirement. Changes of a function are tried. "" if there is a sound
+    design.
     """
-    if found.sound:
+    if synthesis.sound:
         return ""
-    if found.helpful_change:
-        return found.helpful_change
-    if found.costliest is not None:
-        return _attained(found)
-    if found.task.kind == "improve":
-        if not found.designs:
-            return _of_goals(found)
-        unmoved = [own for own in found.designs if own.kinds == (DefectKind.UNMOVED,)]
+    if synthesis.helpful_change:
+        return synthesis.helpful_change
+    if synthesis.most_restrictive is not None:
+        return _attained(synthesis)
+    if synthesis.task.kind == "improve":
+        if not synthesis.designs:
+            return _of_goals(synthesis)
+        unmoved = [one for one in synthesis.designs if one.kinds == (DefectKind.UNMOVED,)]
         if unmoved:
             return (
                 f"{unmoved[0].defects[0].message[:1].upper()}{unmoved[0].defects[0].message[1:]}."
             )
-        settings = found.task.improvement
+        settings = synthesis.task.improvement
         wider = ", wider bounds" if settings is not None and settings.bounds else ""
-        told = (
-            f"The driven range is the table of {found.task.mechanisms[0]}. Try more starts{wider}, "
-            "targets nearer to its own values, or a part of it: "
+        text = (
+            f"The driven range is the table of {synthesis.task.mechanisms[0]}. Try more "
+            f"starts{wider}, targets nearer to its present values, or a part of the range: "
             "[wanted] input = { from = …, to = … }."
         )
-        return told if DefectKind.RANGE in found.defects else ""
-    if found.designs and not found.defects.keys() & {*_MOVING}:
+        return text if DefectKind.RANGE in synthesis.defects else ""
+    if synthesis.designs and not synthesis.defects.keys() & {*_MOVING}:
         return ""
-    first, *others = _changes(found)
+    first, *others = _changes(synthesis)
     steps = first + "".join(f", or {other}" for other in others)
-    blame = "No wish is to blame. " if found.designs else ""
+    blame = "No requirement alone is to blame. " if synthesis.designs else ""
     return f"{blame}Try to {steps}."
 
 
-def near_misses(found: Synthesis) -> list[int]:
+def near_misses(synthesis: Synthesis) -> list[int]:
     """The places of designs that have too small a transmission angle and no other defect, the
     largest angle first.
     """
-    own = [k for k, d in enumerate(found.designs) if d.kinds == (DefectKind.TRANSMISSION,)]
-    return sorted(own, key=lambda k: -found.designs[k].transmission)
+    near = [k for k, d in enumerate(synthesis.designs) if d.kinds == (DefectKind.TRANSMISSION,)]
+    return sorted(near, key=lambda k: -synthesis.designs[k].transmission)
 
 
-def _attained(found: Synthesis) -> str:
-    for k in near_misses(found)[:1]:
-        best = rounded_down(found.designs[k].transmission, 4)
-        return f"The best least transmission angle is {best:g}{found.task.angle.sign}."
+def _attained(synthesis: Synthesis) -> str:
+    for k in near_misses(synthesis)[:1]:
+        best = rounded_down(synthesis.designs[k].transmission, 4)
+        return f"The best least transmission angle is {best:g}{synthesis.task.angle.sign}."
     return ""
 
 
-def _of_goals(found: Synthesis) -> str:
+def _of_goals(synthesis: Synthesis) -> str:
     """How to see why no start of an improvement has all its goals."""
-    settings = found.task.improvement
+    settings = synthesis.task.improvement
     names = [goal.of for goal in settings.goals] if settings is not None else []
     if not names:
         return "Start nearer to the positions."
@@ -237,12 +237,13 @@ def _of_goals(found: Synthesis) -> str:
     why = "No start has a value of every goal; the time ratio of a constant angle has none."
     if settings is not None and settings.bounds:
         why = "No start within the bounds closes and has a value of every goal."
-    return f"{why} linkwork sweep {found.task.mechanisms[0]} --columns shows the values of {shown}."
+    name = synthesis.task.mechanisms[0]
+    return f"{why} linkwork sweep {name} --columns shows the values of {shown}."
 
 
-def _changes(found: Synthesis) -> Iterator[str]:
+def _changes(synthesis: Synthesis) -> Iterator[str]:
     """Changes of a task that give further designs, the smallest first."""
-    task = found.task
+    task = synthesis.task
     if task.function is not None:
         yield "change the ranges of input and output"
         return
@@ -253,7 +254,7 @@ def _changes(found: Synthesis) -> Iterator[str]:
         yield "enlarge the region of fixed pivots"
     if task.given.fixed_pivots or task.given.moving_pivots or task.given.lengths:
         yield "give fewer pivots and lengths"
-    if found.starts:
+    if synthesis.starts:
         yield "search from more starts"
     elif not any(position.tolerance for position in task.positions):
         yield "give positions a tolerance"
@@ -266,7 +267,7 @@ def _changes(found: Synthesis) -> Iterator[str]:
 # :data:`SOLVERS` holds one solver for each kind of task; a further one needs a line there.
 
 
-Solver = Callable[[Task, Wishes, Callable[[float], None] | None], Found]
+Solver = Callable[[Task, Wishes, Callable[[float], None] | None], SolvedTask]
 
 #: The solvers by kind of task.
 SOLVERS: dict[str, Solver] = {
@@ -303,42 +304,42 @@ def solve_task(task: Task, *, progress: Callable[[float], None] | None = None) -
 
 def _of_loops(task: Task, progress: Callable[[float], None] | None = None) -> Synthesis:
     """Designs of one loop."""
-    found = SOLVERS[task.kind](task, wishes_of(task, Drive.A0), progress)
+    solved = SOLVERS[task.kind](task, wishes_of(task, Drive.A0), progress)
     judged = [
         JudgedDesigns(
             task=task,
-            given=part,
+            candidates=part,
             drive=drive,
             wishes=(wishes := _measured(wishes_of(task, drive), part, zero)),
             verdicts=judge(part, drive, wishes),
             zero=zero,
-            output=found.output,
+            output=solved.output,
         )
-        for part, zero in zip_longest(found.candidates, found.zeros)
+        for part, zero in zip_longest(solved.candidates, solved.zeros)
         for drive in part.drives
-        if drive in found.drives
+        if drive in solved.drives
     ]
     if task.function is not None:
-        found = replace(found, message=found.message + task.function.note)
-    return _synthesis(task, found, _ranked_loops(task, judged), sum(map(len, found.candidates)))
+        solved = replace(solved, message=solved.message + task.function.note)
+    return _synthesis(task, solved, _ranked_loops(task, judged), sum(map(len, solved.candidates)))
 
 
 def _synthesis(
-    task: Task, found: Found, designs: Sequence[JudgedDesign], linkages: int
+    task: Task, solved: SolvedTask, designs: Sequence[JudgedDesign], linkages: int
 ) -> Synthesis:
     return Synthesis(
         task=task,
-        complex=found.complex,
-        real=found.real,
-        proved=found.proved,
-        triples=found.triples,
+        complex=solved.complex,
+        real=solved.real,
+        proved=solved.proved,
+        triples=solved.triples,
         linkages=linkages,
-        completeness=found.completeness,
-        message=found.message,
-        dyads=() if found.dyads is None else tuple(_dyads(found)),
+        completeness=solved.completeness,
+        message=solved.message,
+        dyads=() if solved.dyads is None else tuple(_dyads(solved)),
         designs=tuple(designs),
-        starts=found.starts,
-        interrupted=found.interrupted,
+        starts=solved.starts,
+        interrupted=solved.interrupted,
     )
 
 
@@ -350,8 +351,8 @@ def _what_helps(task: Task) -> str:
         except MechanismError:  # more pairs than free start angles meet
             continue
         if count:
-            told = "is 1 design" if count == 1 else f"are {count} designs"
-            return f"{change} there {told} without defects."
+            designs = "is 1 design" if count == 1 else f"are {count} designs"
+            return f"{change} there {designs} without defects."
     return ""
 
 
@@ -362,8 +363,8 @@ def _other_goals(task: Task) -> Iterator[tuple[str, FunctionGoal]]:
     if goal.starts_fixed:
         free = goal.freed
         spans = [f"{name} = {getattr(free, name)[1]:g}" for name in free.free]
-        told = "leave out input and output" if goal.pairs else " and ".join(spans)
-        yield f"With free start angles ({told})", free
+        change = "leave out input and output" if goal.pairs else " and ".join(spans)
+        yield f"With free start angles ({change})", free
     for fit in FITS:
         if fit != goal.fit:
             yield f'With fit = "{fit}"', replace(goal, fit=fit)
@@ -371,12 +372,12 @@ def _other_goals(task: Task) -> Iterator[tuple[str, FunctionGoal]]:
 
 def _measured(wishes: Wishes, part: Candidates, zero: tuple[float, float] | None) -> Wishes:
     """Wishes with the range of a crank that the task measures from its moving pivot."""
-    asked = wishes.range
+    span = wishes.range
     crank = (part.moving_a[:1, 0] - part.fixed_a[:1]) * np.exp(-1j * (zero or (0.0, 0.0))[0])
-    if asked is None or zero is None or (crank.real > 0.0).all():
+    if span is None or zero is None or (crank.real > 0.0).all():
         return wishes
     return replace(
-        wishes, range=replace(asked, start=asked.start + math.pi, stop=asked.stop + math.pi)
+        wishes, range=replace(span, start=span.start + math.pi, stop=span.stop + math.pi)
     )
 
 
@@ -385,7 +386,7 @@ def _sound_designs(task: Task) -> Callable[[Candidates], int]:
 
     def number(part: Candidates) -> int:
         verdicts = (judge(part, drive, wishes_of(task, drive)) for drive in part.drives)
-        return sum(int(found.sound.sum()) for found in verdicts)
+        return sum(int(verdict.sound.sum()) for verdict in verdicts)
 
     return number
 
@@ -397,7 +398,7 @@ def _improved(task: Task, progress: Callable[[float], None] | None) -> Synthesis
     try:
         ranked = _ranked_alone(task, designs, in_order=bool(front))
     except KeyboardInterrupt:
-        # what is judged is kept; a further interruption ends the rest
+        # verdicts so far are kept; a further interruption ends the rest
         interrupted, ranked = True, _ranked_alone(task, designs, in_order=bool(front))
     seed = (task.improvement or Improvement()).seed
     kind = (
@@ -405,33 +406,33 @@ def _improved(task: Task, progress: Callable[[float], None] | None) -> Synthesis
         if front
         else "different fits"
     )
-    told = f"a sample: {kind} from {starts} starts with seed {seed}"
-    told += _of_motion(task, ranked)
-    told += "" if task.curve is None else task.curve.note
+    message = f"a sample: {kind} from {starts} starts with seed {seed}"
+    message += _of_motion(task, ranked)
+    message += "" if task.curve is None else task.curve.note
     count = len(designs)
-    found = Found(
+    solved = SolvedTask(
         candidates=(),
         complex=count,
         real=count,
         proved=sum(design.improved.sound for design in designs),
         completeness=Completeness.SAMPLED,
-        message=f"interrupted: the best so far of {starts} starts" if interrupted else told,
+        message=f"interrupted: the best so far of {starts} starts" if interrupted else message,
         starts=starts,
         interrupted=interrupted,
     )
-    return _synthesis(task, found, ranked, count)
+    return _synthesis(task, solved, ranked, count)
 
 
 def _six_bars(task: Task, progress: Callable[[float], None] | None) -> Synthesis:
     """All Watt-II six-bars of a function, sound ones by falling score."""
-    designs, found = solve_watt(task, wishes_of(task, Drive.A0), progress)
+    designs, solved = solve_watt(task, wishes_of(task, Drive.A0), progress)
     ranked = _ranked_alone(task, designs)
-    found = replace(found, message=found.message + _of_motion(task, ranked))
-    return _synthesis(task, found, ranked, len(designs))
+    solved = replace(solved, message=solved.message + _of_motion(task, ranked))
+    return _synthesis(task, solved, ranked, len(designs))
 
 
 def _of_motion(task: Task, designs: Sequence[SweptDesign]) -> str:
-    """Where wishes are proved for the sound ones of designs that are swept."""
+    """A note whether requirements of swept sound designs are proved or tested in rows."""
     sound, wishes = [d for d in designs if not d.kinds], " and ".join(wishes_in_motion(task))
     if not wishes or not sound:
         return ""
@@ -445,7 +446,7 @@ def _ranked_alone(
 ) -> tuple[_Design, ...]:
     """Designs that were judged one by one: sound ones by falling score, then the others.
 
-    ``in_order``: sound ones in their own order, all of them delivered.
+    ``in_order``: sound ones keep their order, and all are delivered.
     """
     # an angle in radians, as those of four-bars are
     unit = {task.angle.value: task.angle.radians}
@@ -472,7 +473,7 @@ def _ranked(
     *,
     in_order: bool = False,
 ) -> tuple[_Design, ...]:
-    """Sound designs by falling score, then the others in the order found."""
+    """Sound designs by falling score, then the others in their order."""
     order = sorted(
         (wrong, 0.0 if wrong or in_order else -score, k)
         for k, (wrong, score) in enumerate(zip(refused, scores.tolist(), strict=True))
@@ -481,16 +482,16 @@ def _ranked(
     for place, (wrong, _, k) in enumerate(order, start=1):
         number = place - sound if wrong else place
         delivered = not wrong and (in_order or number <= task.rank.deliver)
-        own = replace(designs[k], number=number, delivered=delivered, score=float(scores[k]))
-        ranked.append(own)
+        design = replace(designs[k], number=number, delivered=delivered, score=float(scores[k]))
+        ranked.append(design)
     return tuple(ranked)
 
 
 def wishes_of(task: Task, drive: Drive) -> Wishes:
-    """The wishes of a task in radians, lengths and complex points, for one driven link."""
+    """The requirements of a task in radians, lengths and complex points, for one driven link."""
     wanted = task.wanted
     reach = np.array([position.tolerance for position in task.positions])
-    # five poses are met within their tolerances, of more no others are kept
+    # designs for five poses meet them within tolerance; for more poses only such designs are kept
     judged = task.kind != "motion" and reach.any()
     points = np.array([complex(*position.point) for position in task.positions])
     return Wishes(
@@ -509,13 +510,13 @@ def wishes_of(task: Task, drive: Drive) -> Wishes:
 
 
 def _is_timed_around(task: Task) -> bool:
-    """Whether given inputs rise or fall by a whole turn: the first and last position then have one
-    input, and the given order is theirs.
+    """Whether the given inputs rise or fall by a whole turn. The first and last position then have
+    one input, and the inputs state the order.
     """
-    given = [position.input for position in task.positions]
-    if len(given) < 2 or any(value is None for value in given):
+    inputs = [position.input for position in task.positions]
+    if len(inputs) < 2 or any(value is None for value in inputs):
         return False
-    steps = np.diff(np.array(given, dtype=float))
+    steps = np.diff(np.array(inputs, dtype=float))
     monotone = bool((steps > 0.0).all() or (steps < 0.0).all())
     return monotone and abs(steps.sum()) >= task.angle.turn * (1.0 - EQUAL_ROWS)
 
@@ -545,10 +546,10 @@ def _ranked_loops(task: Task, judged: list[JudgedDesigns]) -> tuple[SynthesizedD
     designs = [
         SynthesizedDesign(task=task, group=part, index=k)
         for part in judged
-        for k in range(len(part.given))
+        for k in range(len(part.candidates))
     ]
     scores = [
-        _scores(task, part.verdicts.transmission, part.verdicts.size, part.given.miss)
+        _scores(task, part.verdicts.transmission, part.verdicts.size, part.candidates.miss)
         for part in judged
     ]
     refused = [bool(wrong) for part in judged for wrong in ~part.verdicts.sound]
@@ -569,8 +570,8 @@ def _scores(task: Task, transmission: Array, sizes: Array, miss: Array) -> Array
 
 
 def _task_sizes(task: Task, sizes: Array) -> tuple[float, float]:
-    """A length of the task's size, or the median size of designs (D,) for goals alone, and what
-    misses are compared with, of their own unit; those of goals alone are relative.
+    """The size that scores divide lengths by (of the task, or the median of designs (D,) for goals
+    alone), and the size that they divide misses by (1 for goals alone, which are relative).
     """
     goal = task.function
     if task.has_goals_alone:
@@ -584,9 +585,9 @@ def _task_sizes(task: Task, sizes: Array) -> tuple[float, float]:
     return span, span
 
 
-def _dyads(found: Found) -> Iterator[Dyad]:
-    assert found.dyads is not None
-    for kind, moving, fixed, normal, error, refusal in found.dyads.dyads():
+def _dyads(solved: SolvedTask) -> Iterator[Dyad]:
+    assert solved.dyads is not None
+    for kind, moving, fixed, normal, error, refusal in solved.dyads.dyads():
         yield Dyad(
             kind=kind,
             moving=(moving.real, moving.imag),

@@ -24,7 +24,7 @@ from linkwork.synthesis.defects.verdicts import Defect, DefectKind, JudgedDesign
 from linkwork.synthesis.improvement.proved_design import ImprovedDesign
 from linkwork.synthesis.improvement.settings import least_in_rows
 from linkwork.synthesis.tasks.conditions import (
-    SAME_GIVEN,
+    EQUAL_LENGTHS,
     Wishes,
     distances_to_segments,
     outside_range,
@@ -35,14 +35,14 @@ from linkwork.synthesis.tasks.task import Task
 @internal("swept", "description", "improved")
 @dataclass(frozen=True, kw_only=True, eq=False, repr=False)
 class SweptDesign(JudgedDesign):
-    """A mechanism of any kind that is judged by a sweep, and what keeps it from doing its task.
+    """A mechanism of any kind that is judged by a sweep, with its defects.
 
     Parameters
     ----------
     swept : callable
-        The design with its proof, found when it is first needed.
+        The design with its proof, made at first use.
     wishes : Wishes
-        Those of the task, in radians.
+        The requirements of the task, in radians.
 
     Examples
     --------
@@ -95,7 +95,7 @@ class SweptDesign(JudgedDesign):
         return self.improved.motion
 
     @cached_property
-    def _places(self) -> dict[str, ComplexArray]:
+    def _moving_points(self) -> dict[str, ComplexArray]:
         """The points in the rows that have a position."""
         motion = self._motion
         if motion is None:
@@ -105,7 +105,7 @@ class SweptDesign(JudgedDesign):
     @property
     def points(self) -> dict[str, complex]:
         """The points in the first row that has a position [length]."""
-        return {name: complex(path[0]) for name, path in self._places.items() if len(path)}
+        return {name: complex(path[0]) for name, path in self._moving_points.items() if len(path)}
 
     @property
     def inputs(self) -> tuple[float, ...]:
@@ -146,12 +146,12 @@ class SweptDesign(JudgedDesign):
         description, points = self.description, self.points
         if not isinstance(description, Draft) or not points:
             return np.zeros(0)
-        moving = {p for name, own in description.links.items() if name != GROUND for p in own}
-        found = []
-        for name, own in description.links.items():
-            held = [p for p in own if name != GROUND or p in moving]
-            found += [abs(points[p] - points[q]) for p, q in combinations(held, 2)]
-        return np.array([length for length in found if length > 0.0])
+        moving = {p for name, ends in description.links.items() if name != GROUND for p in ends}
+        lengths = []
+        for name, ends in description.links.items():
+            held = [p for p in ends if name != GROUND or p in moving]
+            lengths += [abs(points[p] - points[q]) for p, q in combinations(held, 2)]
+        return np.array([length for length in lengths if length > 0.0])
 
     @property
     def size(self) -> float:
@@ -180,20 +180,20 @@ class SweptDesign(JudgedDesign):
     @cached_property
     def defects(self) -> tuple[Defect, ...]:
         """Its defects in words; none for a sound design."""
-        found = tuple(self._found())
-        if not found and not self.improved.sound:
-            found = ((DefectKind.NOT_PROVED, self.improved.message),)
-        return tuple(Defect(kind=kind, between=None, message=message) for kind, message in found)
+        messages = tuple(self._defect_messages())
+        if not messages and not self.improved.sound:
+            messages = ((DefectKind.NOT_PROVED, self.improved.message),)
+        return tuple(Defect(kind=kind, between=None, message=message) for kind, message in messages)
 
-    def _found(self) -> Iterator[tuple[DefectKind, str]]:
+    def _defect_messages(self) -> Iterator[tuple[DefectKind, str]]:
         motion, task = self._motion, self.task
         if motion is None or not motion.found.any():
             yield DefectKind.RANGE, self.improved.message
             return
         lost = int(np.count_nonzero(~motion.found))
         if lost:
-            told = "the input does not turn fully: " if task.wanted.turns_fully else ""
-            yield DefectKind.RANGE, f"{told}{lost} of {len(motion)} rows have no position"
+            reason = "the input does not turn fully: " if task.wanted.turns_fully else ""
+            yield DefectKind.RANGE, f"{reason}{lost} of {len(motion)} rows have no position"
         elif (end := branch_end(motion)) is not None:
             kind, place = end.kind, self._input_text(end.input)
             if kind is LimitKind.DEAD_POINT:
@@ -216,28 +216,28 @@ class SweptDesign(JudgedDesign):
             yield DefectKind.TOLERANCE, tolerance_message(misses, reach, task.length)
         if self.wishes.ordered and task.positions and not _is_in_order(self.improved.inputs):
             order = np.argsort(self.improved.inputs, kind="stable") + 1
-            told = f"the input passes the positions in the order {', '.join(map(str, order))}"
-            yield DefectKind.ORDER, told
-        for told in self.improved.broken:
-            yield DefectKind.BOUND, told
+            reason = f"the input passes the positions in the order {', '.join(map(str, order))}"
+            yield DefectKind.ORDER, reason
+        for reason in self.improved.broken:
+            yield DefectKind.BOUND, reason
         yield from self._transmission_defects()
         yield from self._geometric_defects()
 
     def _transmission_defects(self) -> Iterator[tuple[DefectKind, str]]:
-        angle, wanted = self.task.angle, self.task.wanted.transmission
+        angle, least_wanted = self.task.angle, self.task.wanted.transmission
         whole, least = self.improved.whole_motion, self.wishes.transmission
-        if not wanted or self.transmission >= wanted:
+        if not least_wanted or self.transmission >= least_wanted:
             return
-        kind, told, place = DefectKind.TRANSMISSION, "transmission angle down to", ""
+        kind, text, place = DefectKind.TRANSMISSION, "transmission angle down to", ""
         down = self.transmission
         if whole is not None and whole.dyads:
-            found = whole.least_transmission(least)
-            down, place = angle.from_radians(found.high), f" at {self._input_text(found.at)}"
-            if found.high >= least:
+            bound = whole.least_transmission(least)
+            down, place = angle.from_radians(bound.high), f" at {self._input_text(bound.at)}"
+            if bound.high >= least:
                 kind = DefectKind.NOT_PROVED
-                told = "not proved: the transmission angle comes down to"
-        shown = told_beside(down, wanted)
-        yield kind, f"{told} {shown}{angle.sign}{place}, wanted {wanted:g}{angle.sign}"
+                text = "not proved: the transmission angle comes down to"
+        shown = told_beside(down, least_wanted)
+        yield kind, f"{text} {shown}{angle.sign}{place}, wanted {least_wanted:g}{angle.sign}"
 
     def _input_text(self, value: float) -> str:
         """A value of the leading input with its name."""
@@ -250,12 +250,12 @@ class SweptDesign(JudgedDesign):
         """The first position outside the driven range."""
         table = np.asarray(motion.inputs[self._lead])[motion.asked]
         turn = self.task.angle.turn if motion.derivative_unit == "rad" else math.inf
-        for k, at, told in islice(outside_range(self.improved.inputs, table, turn), 1):
-            yield DefectKind.RANGE, f"position {k + 1} is passed at {at:.6g}, {told}"
+        for k, at, place in islice(outside_range(self.improved.inputs, table, turn), 1):
+            yield DefectKind.RANGE, f"position {k + 1} is passed at {at:.6g}, {place}"
 
     def _geometric_defects(self) -> Iterator[tuple[DefectKind, str]]:
         if self.task.kind != "improve":  # improvements vary what their tasks name
-            yield from self._missed_givens()
+            yield from self._missed_dimensions()
         outside = [
             name
             for name, place in self._pivots().items()
@@ -267,8 +267,8 @@ class SweptDesign(JudgedDesign):
         if len(lengths):
             shortest, longest = lengths.min(), lengths.max()
             if not self.wishes.allows(shortest, longest):
-                told = f"lengths from {shortest:.4g} to {longest:.4g} are out of bounds"
-                yield DefectKind.LENGTHS, told
+                message = f"lengths from {shortest:.4g} to {longest:.4g} are out of bounds"
+                yield DefectKind.LENGTHS, message
         yield from self._obstacle_defects()
 
     def _obstacle_defects(self) -> Iterator[tuple[DefectKind, str]]:
@@ -277,18 +277,18 @@ class SweptDesign(JudgedDesign):
             return
         if whole is None:
             if self._meets_obstacle():
-                told = "a link meets an obstacle in a row, or passes it too closely to exclude that"
-                yield DefectKind.OBSTACLE, told
+                text = "a link meets an obstacle in a row, or passes it too closely to exclude that"
+                yield DefectKind.OBSTACLE, text
             return
-        found = whole.contact([ends for _, ends in links], self.wishes.obstacles)
-        if found.met is not None:
-            side, place = found.met
-            told = f'"{links[side][0]}" meets an obstacle at {self._input_text(place)}'
-            yield DefectKind.OBSTACLE, told
-        elif found.open is not None:
-            first, last = map(self._input_text, found.open)
-            told = "not proved: the links may meet an obstacle between"
-            yield DefectKind.NOT_PROVED, f"{told} {first} and {last}"
+        contact = whole.contact([ends for _, ends in links], self.wishes.obstacles)
+        if contact.met is not None:
+            side, place = contact.met
+            text = f'"{links[side][0]}" meets an obstacle at {self._input_text(place)}'
+            yield DefectKind.OBSTACLE, text
+        elif contact.open is not None:
+            first, last = map(self._input_text, contact.open)
+            text = "not proved: the links may meet an obstacle between"
+            yield DefectKind.NOT_PROVED, f"{text} {first} and {last}"
 
     @cached_property
     def _sides(self) -> list[tuple[str, tuple[str, str]]]:
@@ -296,38 +296,38 @@ class SweptDesign(JudgedDesign):
         description = self.description
         if not isinstance(description, Draft):
             return []
-        links = {name: own for name, own in description.links.items() if name != GROUND}
-        return [(name, ends) for name, own in links.items() for ends in combinations(own, 2)]
+        links = {name: held for name, held in description.links.items() if name != GROUND}
+        return [(name, ends) for name, held in links.items() for ends in combinations(held, 2)]
 
-    def _missed_givens(self) -> Iterator[tuple[DefectKind, str]]:
+    def _missed_dimensions(self) -> Iterator[tuple[DefectKind, str]]:
         """Pivots and lengths that the task gives and the design does not have."""
         given, points, unit = self.task.given, self.points, self.task.length
-        near = SAME_GIVEN * self.size
+        near = EQUAL_LENGTHS * self.size
         pivots = np.array([*self._pivots().values()], dtype=complex)
         for place in given.fixed_pivots:
             if not np.abs(pivots - complex(*place)).min(initial=np.inf) <= near:
                 yield DefectKind.PIVOTS, f"no fixed pivot at ({place[0]:g}, {place[1]:g}) as given"
-        for name, wanted in given.lengths.items():
+        for name, goal in given.lengths.items():
             one, other = name.split()
             if not {one, other} <= points.keys():
-                yield DefectKind.LENGTHS, f'no length "{name}", given as {wanted:g} {unit}'
+                yield DefectKind.LENGTHS, f'no length "{name}", given as {goal:g} {unit}'
                 continue
-            found = abs(points[one] - points[other])
-            if abs(found - wanted) > SAME_GIVEN * wanted:
-                told = f'the length "{name}" is {found:.6g} {unit}, given as {wanted:g} {unit}'
-                yield DefectKind.LENGTHS, told
+            length = abs(points[one] - points[other])
+            if abs(length - goal) > EQUAL_LENGTHS * goal:
+                message = f'the length "{name}" is {length:.6g} {unit}, given as {goal:g} {unit}'
+                yield DefectKind.LENGTHS, message
 
     def _pivots(self) -> dict[str, complex]:
         description = self.description
         if not isinstance(description, Draft):
             return {}
-        moving = {p for name, own in description.links.items() if name != GROUND for p in own}
+        moving = {p for name, ends in description.links.items() if name != GROUND for p in ends}
         return {p: self.points[p] for p in description.links.get(GROUND, ()) if p in moving}
 
     def _meets_obstacle(self) -> bool:
         """Whether a side of a link comes nearer to a circle than its ends move between rows."""
         for _, ends in self._sides:
-            one, other = (self._places[point] for point in ends)
+            one, other = (self._moving_points[point] for point in ends)
             moved = max(_largest_step(one), _largest_step(other))
             for x, y, radius in self.wishes.obstacles:
                 away = distances_to_segments(np.array(complex(x, y)), one, other)
@@ -359,12 +359,12 @@ class SweptDesign(JudgedDesign):
 
 
 def wishes_in_motion(task: Task) -> tuple[str, ...]:
-    """Wishes of a task that depend on all positions: others than lengths and fixed pivots."""
-    asked = (
+    """Requirements of a task that depend on all positions: not lengths and fixed pivots."""
+    conditions = (
         (TRANSMISSION_ANGLE.word, task.wanted.transmission),
         ("clear_of", task.wanted.obstacles),
     )
-    return tuple(word for word, given in asked if given)
+    return tuple(word for word, requested in conditions if requested)
 
 
 def _is_in_order(inputs: tuple[float, ...]) -> bool:

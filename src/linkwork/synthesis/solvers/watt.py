@@ -24,7 +24,7 @@ from linkwork.synthesis.improvement.proved_design import proved_design
 from linkwork.synthesis.loops.candidates import Candidates, Drive, LoopKind
 from linkwork.synthesis.loops.driven_loop import NOWHERE, Travel, driven_loops, travel_of
 from linkwork.synthesis.six_bars.watt import PAIRS, WattSixBars, watt_six_bars
-from linkwork.synthesis.solvers.result import Found
+from linkwork.synthesis.solvers.result import SolvedTask
 from linkwork.synthesis.solvers.swept_design import SweptDesign
 from linkwork.synthesis.tasks.conditions import Wishes
 from linkwork.synthesis.tasks.task import WATT_II, Task
@@ -84,36 +84,36 @@ class WattGroup:
             for name, travel in decided.items():
                 after = int(getattr(travel, word)[k]) + 1
                 if after != NOWHERE + 1:
-                    told = f"{word} of the loop {name} changes between positions {after} and"
+                    message = f"{word} of the loop {name} changes between positions {after} and"
                     yield Defect(
-                        kind=kind, between=(after, after + 1), message=f"{told} {after + 1}"
+                        kind=kind, between=(after, after + 1), message=f"{message} {after + 1}"
                     )
         for name in travels.keys() - decided.keys():
-            told = f"not proved: to rounding, the loop {name} is at a dead point or change point"
-            yield Defect(kind=DefectKind.NOT_PROVED, between=None, message=told)
+            message = f"not proved: to rounding, the loop {name} is at a dead point or change point"
+            yield Defect(kind=DefectKind.NOT_PROVED, between=None, message=message)
 
 
-def watt_group(task: Task, found: WattSixBars, wanted: IndexArray, zero: Array | None) -> WattGroup:
+def watt_group(task: Task, bars: WattSixBars, kept: IndexArray, zero: Array | None) -> WattGroup:
     """The six-bars of a task.
 
     Parameters
     ----------
     task : Task
-    found : WattSixBars
-    wanted : (N,)
+    bars : WattSixBars
+    kept : (N,)
         The task's positions among the nine.
     zero : (2,), optional
         Angles of crank and rocker at the first position [rad]; without them the fixed pivots are
         given, or level.
     """
-    a, b, c, e = found.arms.T
-    count = len(found)
-    crank, rocker = np.exp(1j * found.inputs), np.exp(1j * found.outputs)
-    origin, first, second = (np.zeros(count, dtype=complex), *_grounds(task, found, zero))
-    turns = found.turns
+    a, b, c, e = bars.arms.T
+    count = len(bars)
+    crank, rocker = np.exp(1j * bars.inputs), np.exp(1j * bars.outputs)
+    origin, first, second = (np.zeros(count, dtype=complex), *_grounds(task, bars, zero))
+    turns = bars.turns
 
     def placed(place: ComplexArray, ground: ComplexArray, arm: ComplexArray) -> ComplexArray:
-        moved: ComplexArray = (place[:, None] + ground[:, None] * arm)[:, wanted]
+        moved: ComplexArray = (place[:, None] + ground[:, None] * arm)[:, kept]
         return moved
 
     pivots = task.given.fixed_pivots
@@ -122,9 +122,7 @@ def watt_group(task: Task, found: WattSixBars, wanted: IndexArray, zero: Array |
     centre, last = origin + first, origin + first + second
     size = np.maximum(np.abs(first), np.abs(second))
     far = np.abs(np.stack([origin, centre, last])).max(axis=0)
-    error = found.error * size + _WATT_GROUP_ROUNDING * (
-        far + size * np.abs(found.arms).max(axis=1)
-    )
+    error = bars.error * size + _WATT_GROUP_ROUNDING * (far + size * np.abs(bars.arms).max(axis=1))
     one = _four_bars(
         (origin, centre),
         (
@@ -141,21 +139,21 @@ def watt_group(task: Task, found: WattSixBars, wanted: IndexArray, zero: Array |
         ),
         error,
     )
-    return WattGroup(task=task, first=one, second=other, inputs=found.inputs[wanted])
+    return WattGroup(task=task, first=one, second=other, inputs=bars.inputs[kept])
 
 
 def _grounds(
-    task: Task, found: WattSixBars, zero: Array | None
+    task: Task, six_bars: WattSixBars, zero: Array | None
 ) -> tuple[ComplexArray, ComplexArray]:
     """B0 - A0 and C0 - B0 (D,): as the pivots are given, or turned to the start angles.
 
     The first ground is 1 long; the second four-bar is as large as the first one.
     """
     pivots = [complex(*pivot) for pivot in task.given.fixed_pivots]
-    ones = np.ones(len(found), dtype=complex)
+    ones = np.ones(len(six_bars), dtype=complex)
     if pivots:
         return ones * (pivots[1] - pivots[0]), ones * (pivots[2] - pivots[1])
-    a, b, c, e = found.arms.T
+    a, b, c, e = six_bars.arms.T
     first, second = (
         np.abs(np.stack([x, y, 1.0 + y - x, ones])).max(axis=0) for x, y in ((a, b), (c, e))
     )
@@ -213,26 +211,26 @@ def first_angle(group: WattGroup, k: int, wishes: Wishes) -> float:
     """The angle of the crank at the first position, in the turn in which the wanted range, or else
     the task, has it [rad].
     """
-    points, goal, wanted = group.points(k), group.task.function, wishes.range
+    points, goal, driven = group.points(k), group.task.function, wishes.range
     crank = points["A"] - points["A0"]
     angle = math.atan2(crank.imag, crank.real)
-    if wanted is not None and not wanted.turn:
-        least = min(wanted.start, wanted.stop) - ROUNDED_ANGLE
+    if driven is not None and not driven.turn:
+        least = min(driven.start, driven.stop) - ROUNDED_ANGLE
         return angle + FULL_TURN * math.ceil((least - angle) / FULL_TURN)
     if goal is None or goal.input is None:
         # without start angles in the first turn
         return angle if angle > -_WATT_LINKAGE_ROUNDING else angle + FULL_TURN
-    given = group.task.in_radians(goal.precision_points()[0][0])
-    return angle + FULL_TURN * round((given - angle) / FULL_TURN)
+    first_input = group.task.in_radians(goal.precision_points()[0][0])
+    return angle + FULL_TURN * round((first_input - angle) / FULL_TURN)
 
 
 def driven_range(group: WattGroup, k: int, wishes: Wishes) -> tuple[float, float]:
     """The driven range: as wanted, else the range of the function, or its pairs [rad]."""
-    task, wanted, start = group.task, wishes.range, first_angle(group, k, wishes)
+    task, requested, start = group.task, wishes.range, first_angle(group, k, wishes)
     goal, inputs = task.function, group.inputs
-    if wanted is not None:
+    if requested is not None:
         turn = math.copysign(FULL_TURN, inputs[-1] - inputs[0])
-        return (start, start + turn) if wanted.turn else (wanted.start, wanted.stop)
+        return (start, start + turn) if requested.turn else (requested.start, requested.stop)
     if goal is not None and goal.of and goal.input is not None:
         return task.in_radians(goal.input[0]), task.in_radians(goal.input[1])
     low, high = float(inputs.min()), float(inputs.max())
@@ -278,8 +276,8 @@ class WattDesign(SweptDesign):
     index : int
         Its place among them.
     changed : Defect, optional
-        The change of circuit or branch of one of its loops, or that this is not decided; its motion
-        is judged of a design without such a change.
+        A change of circuit or branch of one of the loops, or that this is not decided. Without
+        one, the motion is judged.
 
     Examples
     --------
@@ -313,7 +311,7 @@ class WattDesign(SweptDesign):
 
     @property
     def numbers(self) -> dict[str, float]:
-        """The numbers that vary; none, since all of them are found."""
+        """The numbers that vary; none, since the solver lists all designs."""
         return {}
 
     @cached_property
@@ -350,7 +348,7 @@ class WattDesign(SweptDesign):
 
     @cached_property
     def error(self) -> float:
-        """The largest structural error in the rows of the function's own range, 0 for pairs, NaN
+        """The largest structural error in the rows of the function's range, 0 for pairs, NaN
         for a design that changes branch or circuit [file's angle unit].
         """
         if self.changed:
@@ -358,8 +356,8 @@ class WattDesign(SweptDesign):
         motion, goal = self.improved.motion, self.task.function
         if motion is None or ERROR not in self.description.outputs or goal is None:
             return 0.0
-        found = motion.found
-        wrong = goal.errors(motion["crank"][found], motion["rocker"][found], self.task.angle.turn)
+        solved = motion.found
+        wrong = goal.errors(motion["crank"][solved], motion["rocker"][solved], self.task.angle.turn)
         return float(np.abs(wrong).max(initial=0.0))
 
     @property
@@ -385,13 +383,13 @@ class WattDesign(SweptDesign):
         places = self.group.inputs + self._first_angle
         outside = (places < low - ROUNDED_ANGLE) | (places > high + ROUNDED_ANGLE)
         if outside.any():
-            told = f"position {outside.argmax() + 1} is outside the driven range"
-            yield Defect(kind=DefectKind.RANGE, between=None, message=told)
+            message = f"position {outside.argmax() + 1} is outside the driven range"
+            yield Defect(kind=DefectKind.RANGE, between=None, message=message)
 
     def _details(self) -> Mapping[str, Any]:
-        found = super()._details() if not self.changed else {}
+        details = super()._details() if not self.changed else {}
         names = ("proved_in_motion", "tested_in_rows")
-        return {"inputs": list(self.inputs), **{name: found.get(name, []) for name in names}}
+        return {"inputs": list(self.inputs), **{name: details.get(name, []) for name in names}}
 
 
 # ----------------------------------------------------------------------
@@ -403,7 +401,7 @@ _EQUAL_ANGLES = 1e-9  # rad: angles that differ by whole turns
 
 def solve_watt(
     task: Task, wishes: Wishes, progress: Callable[[float], None] | None
-) -> tuple[tuple[WattDesign, ...], Found]:
+) -> tuple[tuple[WattDesign, ...], SolvedTask]:
     """Designs that are not ranked yet, and the solutions.
 
     Raises
@@ -415,35 +413,35 @@ def solve_watt(
     assert goal is not None, "a task of functions has one"
     inputs, outputs = (values * task.angle.radians for values in goal.precision_points())
     _refuse_equal(task, inputs, outputs)
-    every, wanted = _nine_pairs(np.stack([inputs, outputs]))
-    found = watt_six_bars(*every, progress=progress)
+    every, taken = _nine_pairs(np.stack([inputs, outputs]))
+    six_bars = watt_six_bars(*every, progress=progress)
     zero = np.array([inputs[0], outputs[0]]) if goal.starts_fixed else None
-    group = watt_group(task, found, wanted, zero)
+    group = watt_group(task, six_bars, taken, zero)
     designs = tuple(WattDesign.of(group, k, wishes) for k in range(len(group)))
-    grade, message = _completeness(found, len(inputs))
-    return designs, Found(
+    grade, message = _completeness(six_bars, len(inputs))
+    return designs, SolvedTask(
         candidates=(),
-        complex=len(found.roots.x),
-        real=len(found),
-        proved=int(found.proved.sum()),
+        complex=len(six_bars.roots.x),
+        real=len(six_bars),
+        proved=int(six_bars.proved.sum()),
         completeness=grade,
         message=message,
     )
 
 
-def _completeness(solved: WattSixBars, given: int) -> tuple[Completeness, str]:
+def _completeness(solved: WattSixBars, pairs: int) -> tuple[Completeness, str]:
     roots, grade = solved.roots, solved.completeness
-    found = f"{len(roots.x)} of {roots.paths} solutions found"
-    if given < PAIRS:
-        more = PAIRS - given
-        told = f"a sample: {given} pairs leave a family; {more} more were taken between them"
-        return Completeness.SAMPLED, f"{told} ({found})"
+    counts = f"{len(roots.x)} of {roots.paths} solutions found"
+    if pairs < PAIRS:
+        more = PAIRS - pairs
+        message = f"a sample: {pairs} pairs leave a family; {more} more were taken between them"
+        return Completeness.SAMPLED, f"{message} ({counts})"
     if grade.complete:
-        return grade, f"{grade.value} ({found})"
+        return grade, f"{grade.value} ({counts})"
     why = "other paths met or were lost"
     if len(roots.x) == roots.paths:
         why = f"{np.count_nonzero(~solved.proved)} of the real ones without a proof"
-    return grade, f"not proved: {found}, {why}"
+    return grade, f"not proved: {counts}, {why}"
 
 
 def _refuse_equal(task: Task, inputs: Array, outputs: Array) -> None:
@@ -452,8 +450,8 @@ def _refuse_equal(task: Task, inputs: Array, outputs: Array) -> None:
         for j in range(k):
             apart = np.array([inputs[k] - inputs[j], outputs[k] - outputs[j]])
             if np.abs(apart - FULL_TURN * np.round(apart / FULL_TURN)).max() < _EQUAL_ANGLES:
-                told = f"is pair {j + 1} after whole turns: leave one out"
-                task.refuse([(("function", "pairs", k), told)])
+                message = f"is pair {j + 1} after whole turns: leave one out"
+                task.refuse([(("function", "pairs", k), message)])
 
 
 def _nine_pairs(pairs: Array) -> tuple[Array, IndexArray]:
@@ -474,11 +472,11 @@ def _nine_pairs(pairs: Array) -> tuple[Array, IndexArray]:
 def _between(values: Array, places: Array) -> Array:
     """Values (N,) at places between their indices: the cubic through the four nearest ones."""
     first = np.clip(np.floor(places).astype(int) - 1, 0, len(values) - 4)
-    found = np.zeros(len(places))
+    between = np.zeros(len(places))
     for i in range(4):
         weight = np.ones(len(places))
         for j in range(4):
             if i != j:
                 weight *= (places - first - j) / (i - j)
-        found += weight * values[first + i]
-    return found
+        between += weight * values[first + i]
+    return between

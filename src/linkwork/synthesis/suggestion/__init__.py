@@ -1,1 +1,1 @@
-"""Designs for a task that its search has not found: of the atlas, improved, or given."""
+"""Designs from outside the search of a task: from the atlas, improved, or the start of a task."""

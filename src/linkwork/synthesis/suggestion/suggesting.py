@@ -1,4 +1,4 @@
-"""A design for a task that its search has not found, judged by the wishes of the task."""
+"""A design from outside the search of a task, judged by the requirements of the task."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ from linkwork.synthesis.loops.candidates import Drive
 from linkwork.synthesis.solvers.improvement import improve_description, mechanism_of
 from linkwork.synthesis.solvers.solving import wishes_of
 from linkwork.synthesis.solvers.swept_design import SweptDesign
-from linkwork.synthesis.tasks.conditions import SAME_GIVEN, Point, Wishes, distances_to_segments
+from linkwork.synthesis.tasks.conditions import EQUAL_LENGTHS, Point, Wishes, distances_to_segments
 from linkwork.synthesis.tasks.task import Task
 
 
@@ -50,7 +50,7 @@ class SuggestedDesign:
     point : str
         The point that passes the positions; "" if there are none.
     positions : tuple of (float, float)
-        Where its inputs and misses are measured; others of a task are compared with its path.
+        The positions at which its inputs and misses are known; for others its path is measured.
     """
 
     origin: Origin
@@ -63,10 +63,10 @@ class SuggestedDesign:
         """The design with its defects. The order of positions is judged only where the inputs at
         them are known.
         """
-        own, points = self.improved, tuple(position.point for position in task.positions)
+        improved, points = self.improved, tuple(position.point for position in task.positions)
         if points != self.positions:
-            own = replace(own, inputs=(), misses=self._misses(points))
-        return SweptDesign(task=task, swept=lambda: own, wishes=wishes)
+            improved = replace(improved, inputs=(), misses=self._misses(points))
+        return SweptDesign(task=task, swept=lambda: improved, wishes=wishes)
 
     def _misses(self, points: tuple[Point, ...]) -> tuple[float, ...]:
         """The distances of points from the path; NaN without a path."""
@@ -83,12 +83,12 @@ class SuggestedDesign:
 
 
 class Suggesting(Protocol):
-    """What finds such designs; ``progress`` may raise an error to end the work."""
+    """The functions that make such designs; ``progress`` may raise an error to end the work."""
 
     def wishes(self, task: Task) -> Wishes:
-        """The wishes of a task."""
+        """The requirements of a task."""
 
-    def given(self, task: Task) -> SuggestedDesign | None:
+    def starting_design(self, task: Task) -> SuggestedDesign | None:
         """The mechanism that a task improves; ``None`` for other tasks."""
 
     def nearest(
@@ -117,17 +117,17 @@ _FACTOR, _REACH = 2.0, 0.5  # by which lengths may change, and pivots [longest l
 
 
 def wishes(task: Task) -> Wishes:
-    """The wishes of a task, in radians and complex points."""
+    """The requirements of a task, in radians and complex points."""
     return wishes_of(task, Drive.A0)
 
 
-def given(task: Task) -> SuggestedDesign | None:
+def starting_design(task: Task) -> SuggestedDesign | None:
     """The mechanism that a task improves as it is; ``None`` for tasks of other kinds.
 
     Raises
     ------
     MechanismError
-        If the mechanism is not there, or cannot be driven as wanted.
+        If the mechanism does not exist, or [wanted] input cannot drive it.
     UnknownNameError
         If it does not have the point that follows the positions.
     """
@@ -163,11 +163,11 @@ def nearest(
     progress(0.0)
     atlas = read_atlas()
     progress(_READ)
-    found = []
+    designs = []
     for k, near in enumerate(atlas.nearest(curve, count), start=1):
-        found.append(_near(near, curve, task))
+        designs.append(_near(near, curve, task))
         progress(_READ + (1.0 - _READ) * k / count)
-    return tuple(found)
+    return tuple(designs)
 
 
 def improved(
@@ -180,11 +180,11 @@ def improved(
     Raises
     ------
     InputError
-        If there is nothing to improve towards, or no better design is found.
+        If the task has no goal, or the search gives no better design.
     """
-    wanted = _improvement_of(task, description)
-    designs, _, _ = improve_description(description, wanted, wishes(task), progress)
-    settings = wanted.improvement or Improvement()
+    improvement_task = _improvement_of(task, description)
+    designs, _, _ = improve_description(description, improvement_task, wishes(task), progress)
+    settings = improvement_task.improvement or Improvement()
     point = settings.point or next(iter(description.trace), "")
     before = math.inf
     if task.positions:
@@ -192,7 +192,7 @@ def improved(
         before = start.judged(task, wishes(task)).error
     better = [design for design in designs if design.improved.sound and design.error < before]
     if not better:
-        raise InputError("no better design was found near this one: choose another one")
+        raise InputError("the search near this design gave no better one: choose another design")
     best = min(better, key=lambda design: (bool(design.kinds), design.improved.total))
     return SuggestedDesign(
         origin=Origin.IMPROVED,
@@ -236,14 +236,14 @@ def _free_numbers(task: Task, description: Description) -> tuple[VariedNumber, .
     Raises
     ------
     InputError
-        If there are none, or the design has other lengths than those given.
+        If no number may vary, or the design does not have the given lengths.
     """
     numbers = numbers_to_vary(model_of(description), ())
     fixed = np.array([complex(*pivot) for pivot in task.given.fixed_pivots])
     held: set[str] = set()
     if len(fixed) and isinstance(description, Draft):
         value = description.numbers
-        near = SAME_GIVEN * max(abs(complex(*point)) for point in _points(task))
+        near = EQUAL_LENGTHS * max(abs(complex(*point)) for point in _points(task))
         held = {
             name
             for name, (x, y) in description.points.items()
@@ -251,10 +251,10 @@ def _free_numbers(task: Task, description: Description) -> tuple[VariedNumber, .
         }
     lengths = {q.key: float(q.of(description)) for q in numbers if q.table == "lengths"}
     for name, length in task.given.lengths.items():
-        if abs(lengths.get(name, math.inf) - length) > SAME_GIVEN * length:
+        if abs(lengths.get(name, math.inf) - length) > EQUAL_LENGTHS * length:
             raise InputError(
                 f'the length "{name}" is given as {length:g}, which this design does not have: '
-                "choose one that the search has found"
+                "choose one from the search"
             )
     free = tuple(
         q
@@ -270,8 +270,8 @@ def _free_numbers(task: Task, description: Description) -> tuple[VariedNumber, .
 def _bounds(
     task: Task, description: Description, numbers: tuple[VariedNumber, ...]
 ) -> Iterator[tuple[str, tuple[float, float]]]:
-    """Bounds near the design, without which fits of curves flee to infinite links; wishes of the
-    task replace them.
+    """Bounds near the design, without which fits of curves run off to infinite links; [wanted]
+    replaces them.
     """
     wanted = task.wanted
     bounded = bool(wanted.shortest) or math.isfinite(wanted.longest)

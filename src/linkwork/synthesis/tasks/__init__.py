@@ -1,1 +1,1 @@
-"""Tasks as a user writes them, in files or in Python, and what their wishes mean."""
+"""Tasks as a user writes them, in files or in Python, and the numbers of their requirements."""

@@ -1,4 +1,4 @@
-"""What a task gives: positions, pivots and lengths, wishes, and the ranking; in file units."""
+"""Tables of a task: positions, given pivots and lengths, requirements, ranking; in file units."""
 
 from __future__ import annotations
 
@@ -19,8 +19,8 @@ from linkwork.synthesis.tasks.curve_file import Curve
 #: Lengths that a task of points may give.
 LENGTHS = ("A0 A", "A B", "B0 B", "A0 B0", "A P", "B P")
 _COUPLER = ("A B", "A P", "B P")
-#: Lengths, and pivots by the task's size, that differ by less are those given.
-SAME_GIVEN = 1e-6
+#: Lengths, and pivots by the task's size, that differ by less are equal.
+EQUAL_LENGTHS = 1e-6
 
 Point = tuple[float, float]
 
@@ -69,9 +69,9 @@ class Given:
         """Why the given sides of the coupler, if all three are, make no triangle; or ""."""
         one, other, longest = sorted(self.lengths.get(name, 0.0) for name in _COUPLER)
         slack = one + other - longest
-        if one <= 0.0 or slack > SAME_GIVEN * longest:
+        if one <= 0.0 or slack > EQUAL_LENGTHS * longest:
             return ""
-        if slack < -SAME_GIVEN * longest:
+        if slack < -EQUAL_LENGTHS * longest:
             return "A B, A P and B P are no triangle: leave one out"
         return (
             "A B, A P and B P put P on the line of A and B, where all solutions are double: change "
@@ -134,7 +134,7 @@ class Ranking:
 
 
 # ----------------------------------------------------------------------
-# The wishes of a task in numbers: radians, lengths, and complex points.
+# The requirements of a task in numbers: radians, lengths, and complex points.
 
 
 _LEAST = 1e-300  # in place of 0, of which no multiple is large
@@ -161,7 +161,7 @@ class Wishes:
     obstacles : (M, 3)
         Circles x, y, radius, which no link may meet [length].
     points, reach : (N,) complex, (N,)
-        The wanted points, and how far each may be missed; none: not asked here [length].
+        The points of the task, and how far each may be missed; empty if not checked [length].
     """
 
     ordered: bool = True
@@ -221,7 +221,7 @@ def distances_to_segments(z: ComplexArray, start: ComplexArray, end: ComplexArra
 
 
 # ----------------------------------------------------------------------
-# Wishes and given numbers of a task that no design has together.
+# Requirements and given numbers of a task that contradict each other.
 
 
 _Key = tuple[str | int, ...]
@@ -231,7 +231,7 @@ _EQUAL = 1e-9  # relative: lengths that differ by less are equal
 
 
 def length_contradictions(wanted: Wanted, sides: Mapping[str, float]) -> Problems:
-    """Bounds that exclude each other, or sides of a four-bar that are given, its ground too."""
+    """Bounds that exclude each other, or the given sides of a four-bar, with its ground."""
     least, most = wanted.shortest, wanted.longest
     if least < 0:
         yield (*_LENGTHS, "least"), f"must not be negative, got {least:g}"
@@ -241,17 +241,17 @@ def length_contradictions(wanted: Wanted, sides: Mapping[str, float]) -> Problem
         yield (*_LENGTHS, "ratio"), f"must be 1 or more, got {wanted.ratio:g}"
     ground = sides.get("A0 B0")
     if ground is not None and not least <= ground <= most:
-        told = f"exclude the ground of length {ground:g}: change them, or [given] fixed_pivots"
-        yield _LENGTHS, told
+        text = f"exclude the ground of length {ground:g}: change them, or [given] fixed_pivots"
+        yield _LENGTHS, text
     if len(sides) < 2 or min(sides.values()) <= 0:
         return
     short, *_, long = sorted(sides, key=lambda name: sides[name])
     if sides[long] > wanted.ratio * sides[short] * (1.0 + _EQUAL):
-        given = f'"{long}" = {sides[long]:g} and "{short}" = {sides[short]:g}'
-        yield (*_LENGTHS, "ratio"), f"is exceeded by the given lengths {given}: change one of them"
+        both = f'"{long}" = {sides[long]:g} and "{short}" = {sides[short]:g}'
+        yield ((*_LENGTHS, "ratio"), f"is exceeded by the given lengths {both}: change one of them")
     if len(sides) == 4 and 2.0 * sides[long] >= sum(sides.values()):
-        told = f'cannot close a loop: "{long}" is not shorter than the others together; change one'
-        yield ("given", "lengths"), told
+        text = f'cannot close a loop: "{long}" is not shorter than the others together; change one'
+        yield ("given", "lengths"), text
 
 
 def place_contradictions(
@@ -267,25 +267,25 @@ def place_contradictions(
         yield _REGION, "encloses no area"
         return
     for j, k in _crossings(wanted.region)[:1]:
-        told = f"crosses itself between corners {j + 1}, {j + 2} and {k + 1}, "
-        yield _REGION, f"{told}{(k + 1) % len(wanted.region) + 1}: list them around the region"
+        message = f"crosses itself between corners {j + 1}, {j + 2} and {k + 1}, "
+        yield _REGION, f"{message}{(k + 1) % len(wanted.region) + 1}: list them around the region"
         return
     for k, pivot in enumerate(given.fixed_pivots if wanted.region else ()):
         if _away(pivot, wanted.region):
-            yield ("given", "fixed_pivots", k), "is outside the region that is wanted for it"
+            yield ("given", "fixed_pivots", k), "is outside [wanted] fixed_pivots inside"
     for k, (x, y, radius) in enumerate(wanted.obstacles):
         if radius < 0:
             yield ("wanted", "clear_of", k), f"has the negative radius {radius:g}"
         for j, position in enumerate(positions):
             if math.dist(position.point, (x, y)) + position.tolerance <= radius:
-                told = f"contains the point of position {j + 1}, so no design can be clear of it"
-                yield ("wanted", "clear_of", k), told
+                message = f"contains the point of position {j + 1}, so no design can be clear of it"
+                yield ("wanted", "clear_of", k), message
         for key, corners in _pivots(wanted, given) if pivoted else ():
             if all(math.dist(corner, (x, y)) <= radius for corner in corners):
                 yield key, f"is in circle {k + 1} of clear_of, so no design can be clear of it"
 
 
-def unreached_places(
+def unreachable_points(
     wanted: Wanted, given: Given, positions: Sequence[PrecisionPosition], held: bool
 ) -> Problems:
     """Positions too far from each other for the arms of a coupler, or, if they are to be met within
@@ -296,20 +296,20 @@ def unreached_places(
             (("positions", k, "point"), (other.point,), 4 * wanted.longest + other.tolerance)
             for k, other in enumerate(positions[j + 1 :], start=j + 1)
         ]
-        pivots = [(*own, 2 * wanted.longest) for own in _pivots(wanted, given) if held]
+        pivots = [(*pivot, 2 * wanted.longest) for pivot in _pivots(wanted, given) if held]
         for key, corners, reach in (*others, *pivots):
             apart = _away(one.point, corners)
             if apart - one.tolerance > reach:
-                told = f"is {apart:g} from position {j + 1}, out of reach of links of at most "
+                message = f"is {apart:g} from position {j + 1}, out of reach of links of at most "
                 arms = "two arms reach" if key[0] == "positions" else "crank and arm reach"
-                yield key, f"{told}{wanted.longest:g}: {arms} {reach:g}"
+                yield key, f"{message}{wanted.longest:g}: {arms} {reach:g}"
 
 
 def outside_range(
     inputs: Sequence[float], table: Array, turn: float
 ) -> Iterator[tuple[int, float, str]]:
-    """Inputs outside a table, to the accuracy of rows, in whatever turn: their numbers, where they
-    are in its turn, and what is wrong. ``turn``: infinite for lengths.
+    """Inputs outside a table, to the accuracy of rows, modulo whole turns: their numbers, their
+    values in the turn of the table, and the problem. ``turn``: infinite for lengths.
     """
     low, high = float(table.min()), float(table.max())
     slack, at = EQUAL_ROWS * (high - low), np.array(inputs, dtype=float)
@@ -319,7 +319,7 @@ def outside_range(
         yield int(k), float(at[k]), f"outside the driven range from {low:g} to {high:g}"
 
 
-def repeated_places(
+def repeated_points(
     positions: Sequence[PrecisionPosition], curve: Curve | None, turn: float, *, once: bool
 ) -> Problems:
     """Equal positions, and without ``once`` equal neighbours."""
@@ -351,8 +351,8 @@ def repeated_inputs(
         if curve is None:
             yield ("positions", k, "input"), f"is that of position {j + 1}: move one of them"
         else:
-            told = f"line {curve.lines[k]} has the input of line {curve.lines[j]}"
-            yield ("curve", "file"), f"{told}: move one of them"
+            message = f"line {curve.lines[k]} has the input of line {curve.lines[j]}"
+            yield ("curve", "file"), f"{message}: move one of them"
 
 
 def _pivots(wanted: Wanted, given: Given) -> Iterator[tuple[_Key, Sequence[Point]]]:

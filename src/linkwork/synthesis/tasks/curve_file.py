@@ -68,7 +68,7 @@ def read_curve(table: Mapping[str, Any], folder: Path | None, turn: float = 360.
     name = table["file"]
     path = Path(name) if folder is None else folder / name
     text = text_of(bytes_of(path, str(path)), str(path))
-    rows = _rows(text, str(path))
+    rows = _number_rows(text, str(path))
     timed = table.get("timing", "free") == "as given"
     if timed and any(len(row) < len(_COLUMNS) for _, row in rows):
         line = next(line for line, row in rows if len(row) < len(_COLUMNS))
@@ -79,10 +79,10 @@ def read_curve(table: Mapping[str, Any], folder: Path | None, turn: float = 360.
         note = f'; line {line} of "{name}" repeats the first point, which counts once'
     if not FEWEST <= len(rows) <= _MOST:
         count = f"{len(rows)} point{'' if len(rows) == 1 else 's'}"
-        told = f'"{name}" has {count}: a curve needs {FEWEST} to {_MOST}'
-        raise _problem(("curve", "file"), told)
-    if told := out_of_bounds(np.array([complex(row[0], row[1]) for _, row in rows])):
-        raise _problem(("curve", "file"), f'"{name}" {told}')
+        message = f'"{name}" has {count}: a curve needs {FEWEST} to {_MOST}'
+        raise _problem(("curve", "file"), message)
+    if message := out_of_bounds(np.array([complex(row[0], row[1]) for _, row in rows])):
+        raise _problem(("curve", "file"), f'"{name}" {message}')
     return Curve(
         points=tuple((row[0], row[1]) for _, row in rows),
         inputs=tuple(row[2] for _, row in rows) if timed else (),
@@ -115,29 +115,29 @@ def _is_repeated(rows: list[list[float]], timed: bool, turn: float) -> bool:
     return not timed or abs(abs(rows[-1][2] - rows[0][2]) - turn) <= EQUAL_ROWS * turn
 
 
-def _rows(text: str, name: str) -> list[tuple[int, list[float]]]:
+def _number_rows(text: str, name: str) -> list[tuple[int, list[float]]]:
     """Rows of numbers with their lines; the first row may be a header, # begins a comment."""
-    found: list[tuple[int, list[float]]] = []
+    rows: list[tuple[int, list[float]]] = []
     for line, cells in enumerate(csv.reader(io.StringIO(text)), start=1):
         if not any(cell.strip() for cell in cells) or cells[0].lstrip().startswith("#"):
             continue
         try:
             row = [float(cell) for cell in cells]
         except ValueError:
-            if not found and [cell.strip().lower() for cell in cells] in (
+            if not rows and [cell.strip().lower() for cell in cells] in (
                 list(_COLUMNS[:2]),
                 list(_COLUMNS),
             ):
                 continue
             shown, parted = as_told(",".join(cells)), ";" in cells[0] or "\t" in cells[0]
-            told = f'line {line} of "{name}" holds {shown}: numbers are wanted'
-            told += ", with commas between them and points for decimals" * parted
-            raise _problem(("curve", "file"), told) from None
+            message = f'line {line} of "{name}" holds {shown}: write numbers'
+            message += ", with commas between them and points for decimals" * parted
+            raise _problem(("curve", "file"), message) from None
         if not 2 <= len(row) <= len(_COLUMNS) or not all(map(math.isfinite, row)):
-            told = f'line {line} of "{name}" is no point: give x, y and, if timed, input'
-            raise _problem(("curve", "file"), told)
-        found.append((line, row))
-    return found
+            message = f'line {line} of "{name}" is no point: give x, y and, if timed, input'
+            raise _problem(("curve", "file"), message)
+        rows.append((line, row))
+    return rows
 
 
 def _problem(key: tuple[str, ...], message: str) -> MechanismError:

@@ -59,8 +59,8 @@ class ExactPairs:
     free: int = 5
     fits: bool = True
 
-    def told(self, most: int) -> str:
-        """What to do about more than the most."""
+    def advice(self, most: int) -> str:
+        """The advice to a task with more pairs than the most."""
         return f'{most}, or write fit = "least squares"' if self.fits else str(most)
 
 
@@ -92,7 +92,7 @@ class FunctionGoal:
     fit : str
         "", least squares or minimax.
     exact : ExactPairs
-        How many pairs the wanted mechanism meets.
+        How many pairs the mechanism meets.
     """
 
     of: str = ""
@@ -130,8 +130,8 @@ class FunctionGoal:
         if self.fit and not self.exact.fits:
             yield ("function", "fit"), f"has no effect on {self.exact.mechanism}: leave it out"
         if len(self.free) == 1:
-            told = "has no start, unlike the other one: give both or none"
-            yield ("function", self.free[0]), told
+            message = "has no start, unlike the other one: give both or none"
+            yield ("function", self.free[0]), message
         for key in ("input", "output"):
             ends = getattr(self, key)
             if ends is not None and ends[0] == ends[1]:
@@ -153,22 +153,22 @@ class FunctionGoal:
         shares = np.array(values) / size
         steps, spread = np.abs(np.diff(shares)), float(np.ptp(shares))
         if abs(shares[-1] - shares[0]) <= max(_AS_WRITTEN * spread, _ROUNDED):
-            told = f"has the value {first:g} at both ends"
+            text = f"has the value {first:g} at both ends"
             if first != last:
-                told = f"has nearly the same value at both ends, {first:g} and {last:g}"
-            yield ("function", "of"), f"{told}, so that the output has no range"
+                text = f"has nearly the same value at both ends, {first:g} and {last:g}"
+            yield ("function", "of"), f"{text}, so that the output has no range"
         elif steps.max() > _LARGEST_STEP * spread:
             place = self._x(_DENSE)[steps.argmax()]
-            told = f"jumps by {size * steps.max():.4g} near x = {place:.4g}"
-            yield ("function", "of"), f"{told}: give a range without this place"
+            text = f"jumps by {size * steps.max():.4g} near x = {place:.4g}"
+            yield ("function", "of"), f"{text}: give a range without this place"
         if self.x is not None and self.x[0] == self.x[1]:
             yield ("function", "x"), f"begins and ends at {self.x[0]:g}: give a range"
         exact, count, most = self.exact, self._count, self._most
         if count > most and not self.fit:
-            given = "free" if self.free else "given"
-            told = f"{count} precision points leave no {exact.mechanism} with {given} start angles"
-            most_told = f"keep {exact.told(most)}{self._free_starts(count)}"
-            yield ("function", "positions"), f"{told}: {most_told}"
+            starts = "free" if self.free else "given"
+            text = f"{count} precision points leave no {exact.mechanism} with {starts} start angles"
+            advice = f"keep {exact.advice(most)}{self._free_starts(count)}"
+            yield ("function", "positions"), f"{text}: {advice}"
         elif count < exact.least:
             yield ("function", "positions"), f"{count} given: give {exact.least} or more"
 
@@ -185,17 +185,17 @@ class FunctionGoal:
             yield ("function", "pairs"), f"{count} given: give {exact.least} or more"
         fixed, most = self.starts_fixed, self._most
         if count > most and not self.fit:
-            told = f"{count} pairs leave no {exact.mechanism} in general: keep {exact.told(most)}"
-            yield ("function", "pairs"), told
+            text = f"{count} pairs leave no {exact.mechanism} in general: keep {exact.advice(most)}"
+            yield ("function", "pairs"), text
         outputs = [output for _, output in self.pairs]
         if count and np.ptp(outputs) <= _ROUNDED * max(map(abs, outputs)):
-            told = f"all have the output {outputs[0]:g}, so that the output has no range"
-            yield ("function", "pairs"), told
+            text = f"all have the output {outputs[0]:g}, so that the output has no range"
+            yield ("function", "pairs"), text
         for k, one in enumerate(self.pairs):
             for j in range(k):
                 if one[0] == self.pairs[j][0]:
-                    told = f"has the input {one[0]:g} of pair {j + 1}: leave one out"
-                    yield ("function", "pairs", k), told
+                    text = f"has the input {one[0]:g} of pair {j + 1}: leave one out"
+                    yield ("function", "pairs", k), text
         for key, place in (("input", 0), ("output", 1)):
             ends = getattr(self, key)
             if (ends is None) != (not fixed):
@@ -204,8 +204,8 @@ class FunctionGoal:
                 span = self.pairs[-1][place] - self.pairs[0][place]
                 slack = _EQUAL * max(map(abs, ends))
                 if not math.isclose(ends[1] - ends[0], span, rel_tol=_EQUAL, abs_tol=slack):
-                    told = f"spans {ends[1] - ends[0]:g}, but the pairs span {span:g}"
-                    yield ("function", key), told
+                    text = f"spans {ends[1] - ends[0]:g}, but the pairs span {span:g}"
+                    yield ("function", key), text
 
     def range_problems(self, ends: Pair, turn: float) -> Problems:
         """An input that a driven range leaves out, in whatever turn the range is."""
@@ -216,9 +216,9 @@ class FunctionGoal:
         first, last = float(inputs.min()), float(inputs.max())
         if last + turned > high + slack:
             near = round((low + high - first - last) / 2 / turn) * turn
-            told = f"from {low:g} to {high:g} leaves out inputs of the function, which are from"
-            told = f"{told} {first + near:.6g} to {last + near:.6g}: move or widen it"
-            yield ("wanted", "input"), told
+            message = f"from {low:g} to {high:g} leaves out inputs of the function, which are from"
+            message = f"{message} {first + near:.6g} to {last + near:.6g}: move or widen it"
+            yield ("wanted", "input"), message
 
     def turn_problems(self, turn: float, rotates: bool) -> Problems:
         """Inputs, or angles of the output, of more than a turn; links of six-bars that make several
@@ -230,18 +230,18 @@ class FunctionGoal:
         listed = (("input", inputs), ("output", outputs)) if rotates else (("input", inputs),)
         for key, angles in listed:
             if np.ptp(angles) > turn * (1.0 + EQUAL_ROWS):
-                told = f"spans {key}s of more than a turn, {turn:g}"
+                message = f"spans {key}s of more than a turn, {turn:g}"
                 if self.of and key == "output":
-                    told += f": {self.of} gives {angles.min():.4g} to {angles.max():.4g}"
-                yield ("function", "pairs" if self.pairs else key), told
+                    message += f": {self.of} gives {angles.min():.4g} to {angles.max():.4g}"
+                yield ("function", "pairs" if self.pairs else key), message
 
     def order_problems(self) -> Problems:
         """A pair whose input is not between its neighbours' inputs."""
         steps = np.sign(np.diff(self.points()[0]))
         turned = np.flatnonzero(steps != steps[0])
         if len(turned):
-            told = "is out of order: let inputs rise or fall from pair to pair, or write [wanted]"
-            yield ("function", "pairs", int(turned[0]) + 1), f'{told} order = "any"'
+            text = "is out of order: let inputs rise or fall from pair to pair, or write [wanted]"
+            yield ("function", "pairs", int(turned[0]) + 1), f'{text} order = "any"'
 
     @property
     def _count(self) -> int:
@@ -317,10 +317,10 @@ class FunctionGoal:
         away = inputs - 0.5 * (u0 + u1)
         about = away if abs(u1 - u0) < turn else away.mean()
         share = 0.5 + (away - turn * np.round(about / turn)) / (u1 - u0)
-        own = np.abs(share - 0.5) <= 0.5 + EQUAL_ROWS
+        inside = np.abs(share - 0.5) <= 0.5 + EQUAL_ROWS
         # an end to rounding is the end, where a root or logarithm may begin
-        wanted = self._outputs(np.clip(x0 + share[own] * (x1 - x0), min(self.x), max(self.x)))[1]
-        wrong = outputs[own] - wanted
+        goal = self._outputs(np.clip(x0 + share[inside] * (x1 - x0), min(self.x), max(self.x)))[1]
+        wrong = outputs[inside] - goal
         return np.asarray(wrong - turn * np.round(wrong / turn))
 
     def _of_pairs(self) -> tuple[Array, Array]:
@@ -382,11 +382,11 @@ def _in_unit(node: Node, angle: AngleUnit) -> Node:
         case Binary():
             return Binary(node.operator, _in_unit(node.left, angle), _in_unit(node.right, angle))
         case Call():
-            own = tuple(_in_unit(argument, angle) for argument in node.arguments)
+            arguments = tuple(_in_unit(argument, angle) for argument in node.arguments)
             unit = Binary("/", NumberNode(angle.turn / 2), Name("pi"))
             if node.function in OF_ANGLE:
-                return Call(node.function, (Binary("*", own[0], unit),))
-            call = Call(node.function, own)
+                return Call(node.function, (Binary("*", arguments[0], unit),))
+            call = Call(node.function, arguments)
             return Binary("/", call, unit) if node.function in TO_ANGLE else call
         case _:
             return node

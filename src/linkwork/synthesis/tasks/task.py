@@ -27,8 +27,8 @@ from linkwork.synthesis.tasks.conditions import (
     length_contradictions,
     place_contradictions,
     repeated_inputs,
-    repeated_places,
-    unreached_places,
+    repeated_points,
+    unreachable_points,
 )
 from linkwork.synthesis.tasks.curve_file import Curve
 from linkwork.synthesis.tasks.function_goal import ExactPairs, FunctionGoal
@@ -51,16 +51,16 @@ def mechanism_problems(kind: str, mechanisms: Sequence[str]) -> _Problems:
             yield ("mechanism", k), 'is made for functions only: task = "function"'
         elif name not in (*known, *GUIDED) and kind != "improve":
             made = (*MECHANISMS[:2], WATT_II) if kind == "function" else known
-            told = " or ".join(f'"{one}"' for one in made)
-            yield ("mechanism", k), f"must be {told}, got {as_told(name)}"
+            message = " or ".join(f'"{one}"' for one in made)
+            yield ("mechanism", k), f"must be {message}, got {as_told(name)}"
         of_poses = name in (MECHANISMS[2], *GUIDED) and tuple(mechanisms) != MECHANISMS
         if of_poses and kind not in ("motion", "improve"):
             yield ("mechanism", k), "is made from poses only: leave it out"
         if name == WATT_II and len(mechanisms) > 1 and kind == "function":
-            yield ("mechanism", k), "meets more pairs than others: make it a task of its own"
+            yield (("mechanism", k), "meets more pairs than others: write a separate task for it")
     if kind == "function" and set(mechanisms) == set(MECHANISMS[:2]):
-        told = "of a function is one kind: four-bars give angles, slider-cranks displacements"
-        yield ("mechanism",), told
+        message = "of a function is one kind: four-bars give angles, slider-cranks displacements"
+        yield ("mechanism",), message
 
 
 def watt_pivot_problems(
@@ -74,15 +74,15 @@ def watt_pivot_problems(
     if not fixed:
         return
     if len(fixed) != _WATT_PIVOTS or fixed[1] in (fixed[0], fixed[2]):
-        told = "must be three pivots, A0, B0 and C0, of which neighbours differ"
-        yield ("given", "fixed_pivots"), told
+        message = "must be three pivots, A0, B0 and C0, of which neighbours differ"
+        yield ("given", "fixed_pivots"), message
     elif goal is not None and goal.starts_fixed:
-        told = "leave the start angles no choice: leave out the pivots, or input and output"
-        yield ("given", "fixed_pivots"), told
+        message = "leave the start angles no choice: leave out the pivots, or input and output"
+        yield ("given", "fixed_pivots"), message
 
 
 # ----------------------------------------------------------------------
-# A task: what a mechanism should do, checked, in file units.
+# A checked task, in file units.
 
 
 _MOST_FREE = 4  # poses that leave pivots to choose
@@ -108,7 +108,7 @@ class Task:
         Unit of lengths.
     angle : AngleUnit
     mechanisms : tuple of str
-        The kinds of mechanisms wanted: four-bar, slider-crank, of poses inverted-slider-crank too;
+        The kinds of mechanisms: four-bar, slider-crank, of poses inverted-slider-crank too;
         of poses, and only if named, those without a crank;
         of functions watt-ii alone.
     positions : tuple of PrecisionPosition
@@ -132,7 +132,7 @@ class Task:
     Raises
     ------
     MechanismError
-        With every problem found.
+        Lists all problems.
     """
 
     kind: str
@@ -154,8 +154,8 @@ class Task:
     def __post_init__(self) -> None:
         if self.curve is not None:
             if self.positions:
-                told = "and positions exclude each other: give points in one way"
-                self.refuse([(("curve",), told)])
+                message = "and positions exclude each other: give points in one way"
+                self.refuse([(("curve",), message)])
             object.__setattr__(self, "positions", tuple(_curve_positions(self.curve)))
         self.refuse(self._problems())
 
@@ -165,10 +165,10 @@ class Task:
         return self.improvement is not None and bool(self.improvement.goals) and not self.positions
 
     def refuse(self, problems: Iterable[tuple[tuple[str | int, ...], str]]) -> None:
-        """Raise what is wrong, if anything is: keys with their messages."""
-        found = [Problem(key=key, message=message) for key, message in problems]
-        if found:
-            raise MechanismError(found, f'task "{self.name}"')
+        """Raise an error that lists the problems, if any: keys with their messages."""
+        listed = [Problem(key=key, message=message) for key, message in problems]
+        if listed:
+            raise MechanismError(listed, f'task "{self.name}"')
 
     def _problems(self) -> Problems:
         if self.kind not in KINDS:
@@ -176,13 +176,13 @@ class Task:
         yield from mechanism_problems(self.kind, self.mechanisms)
         exact = self.kind in ("path", "mixed") and not self.is_approximate
         if exact and "four-bar" not in self.mechanisms:
-            told = 'points are solved for the "four-bar" only'
+            text = 'points are solved for the "four-bar" only'
             if self.kind == "path":
-                told += ": with [improve] starts = 1000 other kinds are fitted to them"
-            yield ("mechanism",), told
+                text += ": with [improve] starts = 1000 other kinds are fitted to them"
+            yield ("mechanism",), text
         if self.kind == "function":
             if self.function is None:
-                yield ("function",), "is missing: what the output should follow"
+                yield ("function",), "is missing: give the function of the output"
             else:
                 yield from self.function.problems()
         elif self.kind != "improve" or self.positions:
@@ -195,11 +195,11 @@ class Task:
             if self.improvement.front and self.kind != "improve":
                 yield ("improve", "front"), 'belongs to task = "improve": leave it out'
             if self.improvement.front and self.rank != Ranking():
-                told = "has no effect on a front, which is delivered as a whole: leave it out"
-                yield ("rank",), told
-        small = [*self._small_places()]
+                text = "has no effect on a front, which is delivered as a whole: leave it out"
+                yield ("rank",), text
+        small = [*self._tiny_numbers()]
         yield from small
-        if small:  # of which other checks would say what is not true
+        if small:  # other checks would report false problems
             return
         yield from self._given_problems()
         yield from self._wish_problems()
@@ -208,42 +208,42 @@ class Task:
     def _position_problems(self) -> Problems:
         count = len(self.positions)
         if count < 2:
-            told = "one position is given" if count else "is missing"
-            yield ("positions",), f"{told}: a task needs two or more"
+            text = "is only one" if count else "is missing"
+            yield ("positions",), f"{text}: a task needs two or more"
         for k, position in enumerate(self.positions):
             if self.kind == "motion" and position.angle is None:
                 yield ("positions", k, "angle"), "is missing: a motion task is a list of poses"
             if self.kind in ("path", "improve") and position.angle is not None:
-                told = 'belongs to poses: leave it out, or write task = "mixed" or "motion"'
-                yield ("positions", k, "angle"), told
+                text = 'belongs to poses: leave it out, or write task = "mixed" or "motion"'
+                yield ("positions", k, "angle"), text
             for name in ("tolerance", "angle_tolerance"):
                 if getattr(position, name) < 0:
                     yield ("positions", k, name), "must not be negative"
         turn = self.angle.turn
         # a curve may come back to a point
         once = not self.is_approximate
-        repeated = [*repeated_places(self.positions, self.curve, turn, once=once)]
+        repeated = [*repeated_points(self.positions, self.curve, turn, once=once)]
         # inputs of sliders have no turns
         turn = math.inf if self.kind == "improve" else turn
         yield from repeated or repeated_inputs(self.positions, self.curve, turn)
         bare = [k for k, position in enumerate(self.positions) if not position.tolerance]
         if self.is_approximate and 0 < len(bare) < count:
-            told = "is missing: points that are met by least squares all have tolerances, or none"
-            yield ("positions", bare[0], "tolerance"), told
+            text = "is missing: points that are met by least squares all have tolerances, or none"
+            yield ("positions", bare[0], "tolerance"), text
         exact = all(p.tolerance == p.angle_tolerance == 0 for p in self.positions)
         if self.kind == "motion" and count > _MOST_EXACT and exact:
-            told = f"{count} exact poses leave no four-bar in general: keep {_MOST_EXACT}"
-            yield ("positions",), f"{told}, or give tolerances"
+            text = f"{count} exact poses leave no four-bar in general: keep {_MOST_EXACT}"
+            yield ("positions",), f"{text}, or give tolerances"
         timed = sum(p.input is not None for p in self.positions)
         if 0 < timed < count:
             missing = next(k for k, p in enumerate(self.positions) if p.input is None)
             yield ("positions", missing, "input"), "is missing: time all positions or none"
 
-    def _small_places(self) -> Problems:
+    def _tiny_numbers(self) -> Problems:
         """Coordinates and lengths whose powers are below those of floating point."""
         given, key = self.given, ("positions",) if self.curve is None else ("curve", "file")
         pivots = [*given.fixed_pivots, *given.moving_pivots]
-        for own, places in (
+        for place_key, places in (
             (key, [*(position.point for position in self.positions), *pivots]),
             (("given", "lengths"), [tuple(given.lengths.values())]),
             (("wanted", "fixed_pivots"), self.wanted.region),
@@ -251,8 +251,8 @@ class Task:
         ):
             largest = max((abs(x) for place in places for x in place), default=0.0)
             if 0.0 < largest < _SMALLEST:
-                told = f"has no number beyond ±{largest:.3g} {self.length}"
-                yield own, f"{told}: choose a unit in which it reaches {_SMALLEST:g}"
+                message = f"has no number beyond ±{largest:.3g} {self.length}"
+                yield place_key, f"{message}: choose a unit in which it reaches {_SMALLEST:g}"
 
     def _mixed_problems(self) -> Problems:
         """Poses alone, and more conditions than a four-bar meets."""
@@ -280,8 +280,8 @@ class Task:
         if moving and (self.kind != "motion" or timed):
             yield ("given", "moving_pivots"), "belongs to poses without timing: leave it out"
         if self.kind == "motion" and timed and count > _MOST_TIMED:
-            told = f"{count} poses leave no freedom to time the crank: time at most {_MOST_TIMED}"
-            yield ("positions", 0, "input"), told
+            text = f"{count} poses leave no freedom to time the crank: time at most {_MOST_TIMED}"
+            yield ("positions", 0, "input"), text
         if self.kind in ("path", "mixed", "improve"):
             for k, position in enumerate(self.positions):
                 refused = {"input": not self.is_approximate}
@@ -293,8 +293,8 @@ class Task:
         if self.kind == "function" and fixed:
             level = len(fixed) == 2 and fixed[0][1] == fixed[1][1] and fixed[0][0] < fixed[1][0]
             if not level:
-                told = "must be two pivots on a level line, A0 to the left of B0"
-                yield ("given", "fixed_pivots"), f"{told}: angles are measured from it"
+                text = "must be two pivots on a level line, A0 to the left of B0"
+                yield ("given", "fixed_pivots"), f"{text}: angles are measured from it"
 
     def _length_problems(self) -> Problems:
         """Given lengths that are none, or that the kind of task cannot use."""
@@ -313,7 +313,7 @@ class Task:
             elif not length <= wanted.longest or (
                 "P" not in name and not length >= wanted.shortest
             ):
-                yield key, f"{length:g} is out of the bounds that are wanted for lengths"
+                yield key, f"{length:g} is out of the bounds of [wanted] lengths"
         if not self.is_approximate and self.given.coupler_trouble:
             yield ("given", "lengths"), self.given.coupler_trouble
         if "A0 B0" in lengths and len(self.given.fixed_pivots) == 2:
@@ -323,18 +323,18 @@ class Task:
         wanted = self.wanted
         right = self.angle.turn / 4
         if not 0 <= wanted.transmission < right:
-            told = f"must be at least 0 and below {right:g}, got {wanted.transmission:g}"
-            yield ("wanted", TRANSMISSION_ANGLE.word, "least"), told
+            message = f"must be at least 0 and below {right:g}, got {wanted.transmission:g}"
+            yield ("wanted", TRANSMISSION_ANGLE.word, "least"), message
         if wanted.range is not None and wanted.range[0] == wanted.range[1]:
             yield ("wanted", "input"), f"begins and ends at {wanted.range[0]:g}: give a range"
         # ranges of sliders are lengths, and mechanisms of files may make several turns
         cranks = (
             self.mechanisms == ("four-bar",) if self.kind == "motion" else self.kind != "improve"
         )
-        asked = abs(wanted.range[1] - wanted.range[0]) if wanted.range and cranks else 0.0
-        if asked > self.angle.turn * (1.0 + _ROUNDED_TURN):
-            told = f"spans {asked:g}, more than a turn of {self.angle.turn:g}"
-            yield ("wanted", "input"), f'{told}: write input = "turns fully"'
+        span_wanted = abs(wanted.range[1] - wanted.range[0]) if wanted.range and cranks else 0.0
+        if span_wanted > self.angle.turn * (1.0 + _ROUNDED_TURN):
+            message = f"spans {span_wanted:g}, more than a turn of {self.angle.turn:g}"
+            yield ("wanted", "input"), f'{message}: write input = "turns fully"'
         timed = [p.input for p in self.positions if p.input is not None]
         goal, ends = self.function, wanted.range
         if goal is not None and not [*goal.problems()]:
@@ -348,10 +348,10 @@ class Task:
         count = len(self.positions) or len(timed)
         if wanted.range is not None and len(timed) == count > 0:
             _, span = arc_in_order(np.array(timed, dtype=float), self.angle.turn)
-            asked = abs(wanted.range[1] - wanted.range[0])
-            if span > asked * (1.0 + EQUAL_ROWS):
-                told = f"spans {asked:g}, but the given inputs span {span:g}: widen it"
-                yield ("wanted", "input"), told
+            span_wanted = abs(wanted.range[1] - wanted.range[0])
+            if span > span_wanted * (1.0 + EQUAL_ROWS):
+                message = f"spans {span_wanted:g}, but the given inputs span {span:g}: widen it"
+                yield ("wanted", "input"), message
         yield from length_contradictions(wanted, self._given_sides())
         held = not self.is_approximate or any(p.tolerance for p in self.positions)
         pivoted = self.kind != "improve" and {*self.mechanisms} != {"double-slider"}
@@ -359,10 +359,10 @@ class Task:
         yield from place_contradictions(wanted, self.given, met, pivoted)
         if self.kind != "improve" and not {*GUIDED} & {*self.mechanisms}:
             # farther places say the same
-            yield from islice(unreached_places(wanted, self.given, self.positions, held), 1)
+            yield from islice(unreachable_points(wanted, self.given, self.positions, held), 1)
 
     def _given_sides(self) -> dict[str, float]:
-        """The sides of loops that are given, as far as all kinds of wanted mechanisms have them."""
+        """The given sides of loops that all kinds of mechanisms of the task have."""
         pivots, lengths = self.given.fixed_pivots, self.given.lengths
         sides = {name: lengths[name] for name in LENGTHS[:_SIDES] if name in lengths}
         many = self.is_approximate or self.kind == "function"
@@ -375,7 +375,7 @@ class Task:
 
     @property
     def left_out(self) -> dict[str, str]:
-        """Kinds of mechanisms that a fit of points leaves out, and what given they lack."""
+        """Kinds of mechanisms that a fit of points leaves out, and why."""
         if self.kind == "path" and len(self.given.fixed_pivots) > 1:
             return {"slider-crank": "two fixed pivots are given, and it has one"}
         if self.kind == "path" and "B0 B" in self.given.lengths:
@@ -384,7 +384,7 @@ class Task:
 
     @property
     def is_six_bar(self) -> bool:
-        """Whether Watt-II six-bars are wanted."""
+        """Whether the task is for Watt-II six-bars."""
         return self.kind == "function" and self.mechanisms == (WATT_II,)
 
     @cached_property

@@ -41,7 +41,7 @@ def read_task(path: Path | str) -> Task:
     Raises
     ------
     MechanismFileError
-        With every problem found: file, line, key and remedy.
+        Lists all problems with file, line, key and remedy.
     """
     name = str(path)
     return read_task_text(text_of(bytes_of(as_path(path), name), name), name, as_path(path).parent)
@@ -66,8 +66,8 @@ def read_task_text(text: str, name: str = "the task", folder: Path | None = None
 
 
 def located_task_error(error: MechanismError, task: Task, name: str) -> MechanismError:
-    """Problems that a solver found, with the lines of the task's file."""
-    if not task.text or isinstance(error, MechanismFileError):  # of the mechanism's own file
+    """Problems from a solver, with the lines of the task's file."""
+    if not task.text or isinstance(error, MechanismFileError):  # of the mechanism's file
         return error
     return located_error(error.problems, Lines.of(task.text), name)
 
@@ -78,26 +78,26 @@ def task_of_tables(tables: Mapping[str, Any]) -> Task:
     Raises
     ------
     MechanismError
-        With every problem found, and its key.
+        Lists all problems with their keys.
     """
-    data = {"format": FORMAT, **_plain(tables)}
+    data = {"format": FORMAT, **_plain_data(tables)}
     structure = Structure(data, TASK)
     if structure.problems:
         raise MechanismError(structure.problems, "the task")
     return _task(structure.content, write_tables(data), data.get("name", Task.name))
 
 
-def _plain(given: Any) -> Any:
+def _plain_data(value: Any) -> Any:
     """Tuples as lists, as a file has them, and numbers of other packages as Python's."""
-    match given:
+    match value:
         case Mapping():
-            return {key: _plain(entry) for key, entry in given.items()}
+            return {key: _plain_data(entry) for key, entry in value.items()}
         case list() | tuple() | np.ndarray():
-            return [_plain(entry) for entry in given]
+            return [_plain_data(entry) for entry in value]
         case np.generic():
-            return given.item()
+            return value.item()
         case _:
-            return given
+            return value
 
 
 def _curve(table: Mapping[str, Any], folder: Path | None, turn: float) -> Curve:
@@ -107,12 +107,12 @@ def _curve(table: Mapping[str, Any], folder: Path | None, turn: float) -> Curve:
         if error.problems[0].key:
             raise
         # a file that cannot be read has no key: that of the task which names it
-        told = f'"{table["file"]}": {error.problems[0].message}'
-        problem = Problem(key=("curve", "file"), message=told)
+        message = f'"{table["file"]}": {error.problems[0].message}'
+        problem = Problem(key=("curve", "file"), message=message)
         raise MechanismError([problem], "the task") from None
 
 
-def _own_mechanism(name: str, folder: Path | None) -> str | None:
+def _mechanism_in_folder(name: str, folder: Path | None) -> str | None:
     """The text of the user's mechanism that a task improves, if there is its file."""
     if name in examples():
         return None
@@ -128,18 +128,18 @@ def _units(content: Mapping[str, Any], mechanism: str, text: str | None) -> tupl
     Raises
     ------
     MechanismError
-        If the task has others.
+        If the task has different units.
     """
     length, angle = Description.length, Description.angle
     if text is None:
         return content.get("length", length), AngleUnit(content.get("angle", angle.value))
-    # what is wrong in the file of the mechanism is told when it is read
+    # problems of the mechanism's file are reported when it is read
     with suppress(MechanismFileError, ValueError):
-        own = data_of(text, mechanism)
-        length, angle = str(own.get("length", length)), AngleUnit(own.get("angle", angle.value))
-    told = f"is not the unit of {mechanism}: leave it out, and write all numbers in"
+        data = data_of(text, mechanism)
+        length, angle = str(data.get("length", length)), AngleUnit(data.get("angle", angle.value))
+    message = f"is not the unit of {mechanism}: leave it out, and write all numbers in"
     problems = [
-        Problem(key=(key,), message=f"{told} {unit}")
+        Problem(key=(key,), message=f"{message} {unit}")
         for key, unit in (("length", length), ("angle", angle.value))
         if content.get(key, unit) != unit
     ]
@@ -154,8 +154,8 @@ def _task(content: Mapping[str, Any], text: str, stem: str, folder: Path | None 
     mechanism = content.get("mechanism", MECHANISMS)
     mechanisms = (mechanism,) if isinstance(mechanism, str) else tuple(mechanism)
     improves = content["task"] == "improve" and len(mechanisms) == 1
-    own = _own_mechanism(mechanisms[0], folder) if improves else None
-    known = example_text(mechanisms[0]) if improves and mechanisms[0] in examples() else own
+    local = _mechanism_in_folder(mechanisms[0], folder) if improves else None
+    known = example_text(mechanisms[0]) if improves and mechanisms[0] in examples() else local
     length, angle = _units(content, mechanisms[0], known)
     curve = _curve(content["curve"], folder, angle.turn) if "curve" in content else None
     return Task(
@@ -165,14 +165,14 @@ def _task(content: Mapping[str, Any], text: str, stem: str, folder: Path | None 
         angle=angle,
         mechanisms=mechanisms,
         positions=tuple(map(_position, content.get("positions", ()))),
-        given=_given(content.get("given", {})),
+        given=_given_table(content.get("given", {})),
         function=_function(content["function"], mechanism) if "function" in content else None,
-        wanted=_wanted(content.get("wanted", {})),
+        wanted=_wanted_table(content.get("wanted", {})),
         rank=_ranking(content.get("rank", {})),
         curve=curve,
         improvement=_improvement(content["improve"]) if "improve" in content else None,
         folder=folder,
-        mechanism_text=own,
+        mechanism_text=local,
         text=text,
     )
 
@@ -204,8 +204,8 @@ def _check_tables(content: Mapping[str, Any]) -> None:
     ]
     function = content.get("function", {})
     problems += [
-        Problem(key=("function", key), message=f"has no effect on {told}: leave it out")
-        for name, (told, idle) in _IDLE.items()
+        Problem(key=("function", key), message=f"has no effect on {task_kind}: leave it out")
+        for name, (task_kind, idle) in _IDLE.items()
         for key in idle
         if name in function and key in function
     ]
@@ -246,7 +246,7 @@ def _position(table: dict[str, Any]) -> PrecisionPosition:
     return PrecisionPosition(**{**table, "point": tuple(table["point"])})
 
 
-def _given(table: dict[str, Any]) -> Given:
+def _given_table(table: dict[str, Any]) -> Given:
     pivots = {key: _points(entry) for key, entry in table.items() if key != "lengths"}
     return Given(**pivots, lengths=table.get("lengths", {}))
 
@@ -262,20 +262,20 @@ def _function(table: dict[str, Any], mechanism: Any) -> FunctionGoal:
 
 
 def _improvement(table: dict[str, Any]) -> Improvement:
-    own = {key: entry for key, entry in table.items() if key != "goal"}
-    own["fit"] = table.get("goal", Improvement.fit)
-    own["goals"] = tuple(map(_goal, table.get("goals", [])))
-    own["bounds"] = {name: tuple(pair) for name, pair in table.get("bounds", {}).items()}
-    own["vary"] = tuple(table.get("vary", ()))
-    return Improvement(**own)
+    settings = {key: entry for key, entry in table.items() if key != "goal"}
+    settings["fit"] = table.get("goal", Improvement.fit)
+    settings["goals"] = tuple(map(_goal, table.get("goals", [])))
+    settings["bounds"] = {name: tuple(pair) for name, pair in table.get("bounds", {}).items()}
+    settings["vary"] = tuple(table.get("vary", ()))
+    return Improvement(**settings)
 
 
 def _goal(table: dict[str, Any]) -> Goal:
-    own: dict[str, Any] = {k: tuple(v) if isinstance(v, list) else v for k, v in table.items()}
-    return Goal(**own)
+    entries: dict[str, Any] = {k: tuple(v) if isinstance(v, list) else v for k, v in table.items()}
+    return Goal(**entries)
 
 
-def _wanted(table: dict[str, Any]) -> Wanted:
+def _wanted_table(table: dict[str, Any]) -> Wanted:
     driven = table.get("input")
     lengths = table.get("lengths", {})
     return Wanted(
@@ -295,8 +295,8 @@ def _ranking(table: dict[str, Any]) -> Ranking:
     usual = Ranking()
     # weights that are left out are 0 once any is given
     weights = table.get("by")
-    given = {
+    settings = {
         key: getattr(usual, key) if weights is None else weights.get(key, 0.0)
         for key in (TRANSMISSION_ANGLE.word, "size", "error")
     }
-    return Ranking(**given, deliver=table.get("deliver", usual.deliver))
+    return Ranking(**settings, deliver=table.get("deliver", usual.deliver))

@@ -197,11 +197,11 @@ _GOALS = Tables(
             'A quantity, a number of a motion, "stroke(d)", or a formula',
             required=True,
         ),
-        Key("target", PlainNumber(), "The wanted value"),
+        Key("target", PlainNumber(), "The target value"),
         Key("least", PlainNumber(), "The smallest value allowed"),
         Key("most", PlainNumber(), "The largest value allowed"),
-        Key("at", ListOf(PlainNumber(), "input", 1), "Inputs at which a quantity is wanted"),
-        Key("values", ListOf(PlainNumber(), "value", 1), "The values wanted there"),
+        Key("at", ListOf(PlainNumber(), "input", 1), "Inputs at which values are set"),
+        Key("values", ListOf(PlainNumber(), "value", 1), "The target values there"),
         Key("weight", PlainNumber(), "Weight of this goal; default 1"),
     )
 )

@@ -146,8 +146,8 @@ class ChartAxes:
             return
         if smooth:
             x, y = self._smoothed(x, y)
-        found = np.concatenate(([False], np.isfinite(x + y), [False]))
-        alone = np.flatnonzero(found[1:-1] & ~found[:-2] & ~found[2:])
+        finite = np.concatenate(([False], np.isfinite(x + y), [False]))
+        alone = np.flatnonzero(finite[1:-1] & ~finite[:-2] & ~finite[2:])
         style |= {"marker": "o", "markersize": LINE, "markevery": alone.tolist()}
         if quiet:
             style |= {"color": theme.rule, "linewidth": _QUIET, "zorder": 1.9}
@@ -342,16 +342,16 @@ def set_scale(axes: ChartAxes, side: str, scale: str) -> None:
 
 
 def _number_text(axis: Axis) -> Callable[[float, object], str]:
-    """Plain numbers; if one of the axis is large, all of them with powers of ten."""
+    """Plain numbers; if a number of the axis is large, all with powers of ten."""
 
     def text(value: float, _: object) -> str:
         large = max(map(abs, axis.get_view_interval())) >= _LARGE
-        return power_text(value) if large or axis.get_scale() != "linear" else _plain(value)
+        return power_text(value) if large or axis.get_scale() != "linear" else _digits(value)
 
     return text
 
 
-def _plain(value: float) -> str:
+def _digits(value: float) -> str:
     return f"{value:.6g}".replace("-", "\u2212")
 
 
@@ -359,7 +359,7 @@ def power_text(value: float) -> str:
     """``20``, ``10⁻¹⁴``, ``−5·10⁶``."""
     power = math.floor(math.log10(abs(value)) + 1e-9) if value else 0
     if -3 <= power < 4:
-        return _plain(value)
+        return _digits(value)
     tail = f"10{str(power).translate(_SUPERSCRIPTS)}"
-    head = _plain(value / 10.0**power)
+    head = _digits(value / 10.0**power)
     return head.replace("1", tail) if head in ("1", "\u22121") else f"{head}·{tail}"

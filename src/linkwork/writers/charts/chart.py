@@ -196,7 +196,7 @@ class Chart:
         engine: Any = page.get_layout_engine()
         engine.set(rect=(0.0, 0.0, 1.0, 1.0 - head / height))
 
-    def draw_in(self, given: Sequence[Axes], theme: ChartTheme) -> None:
+    def draw_in(self, axes: Sequence[Axes], theme: ChartTheme) -> None:
         """Draw into existing axes, title and legend above the first ones.
 
         Raises
@@ -204,22 +204,22 @@ class Chart:
         InputError
             If the number of axes differs from that of panels, or a polar panel needs polar axes.
         """
-        if len(given) != len(self.panels):
+        if len(axes) != len(self.panels):
             labels = ", ".join(panel.label for panel in self.panels)
             raise InputError(
-                f"the plot has {len(self.panels)} panels ({labels}), but there are {len(given)} "
+                f"the plot has {len(self.panels)} panels ({labels}), but there are {len(axes)} "
                 "axes: give one for each, or fewer columns"
             )
         polar = self.projection == "polar"
-        if any((ax.name == "polar") != polar for ax in given):
+        if any((ax.name == "polar") != polar for ax in axes):
             raise InputError(
                 'this plot needs polar axes: plt.subplot(projection="polar")'
                 if polar
                 else "this plot needs axes that are not polar: plt.subplot()"
             )
-        for ax, panel in zip(given, self.panels, strict=True):
+        for ax, panel in zip(axes, self.panels, strict=True):
             panel.draw(ChartAxes(ax=ax, theme=theme))
-        first, entries = given[0], _legend_entries(given)
+        first, entries = axes[0], _legend_entries(axes)
         if entries:
             place = {"loc": "lower left", "bbox_to_anchor": (0.0, 1.1 if polar else 1.0)}
             _write_legend(first, entries, theme, ncols=_COLUMNS, borderaxespad=0.2, **place)
@@ -231,12 +231,12 @@ class Chart:
 
 def _legend_entries(drawn: Sequence[Axes]) -> dict[str, Any]:
     """The artists that the legend explains by their names: curves, then marks, then bands."""
-    found: dict[str, Any] = {}
+    artists: dict[str, Any] = {}
     for ax in drawn:
         for artist, name in zip(*ax.get_legend_handles_labels(), strict=True):
-            found.setdefault(name, artist)
-    curves = [name for name, artist in found.items() if artist.get_gid() == f"curve:{name}"]
-    return {name: found[name] for name in dict.fromkeys([*curves, *found])}
+            artists.setdefault(name, artist)
+    curves = [name for name, artist in artists.items() if artist.get_gid() == f"curve:{name}"]
+    return {name: artists[name] for name in dict.fromkeys([*curves, *artists])}
 
 
 def _write_legend(
@@ -252,6 +252,6 @@ def _write_legend(
         **options,
     )
     for line in legend.get_lines():
-        if line.get_linestyle() != "None":  # a curve, which may be wider where others cover it
+        if line.get_linestyle() != "None":  # a curve, wider where covered
             line.set(linewidth=LINE, marker="")
     return legend

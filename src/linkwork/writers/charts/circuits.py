@@ -58,7 +58,7 @@ def circuit_chart(circuits: Circuits, names: Sequence[str] = ()) -> Chart:
 
 
 def branch_chart(circuits: Circuits, names: Sequence[str] = ()) -> Chart:
-    """One panel for every branch, with all others behind it in grey.
+    """One panel for every branch, with all other branches behind it in grey.
 
     Parameters
     ----------
@@ -113,7 +113,7 @@ def _columns(count: int) -> int:
 
 
 def _panel(circuits: Circuits, name: str, front: int | None = None, title: str = "") -> Panel:
-    """One quantity along all circuits, the branch with the number ``front`` before all others."""
+    """One quantity along all circuits, with branch number ``front`` on top."""
     motion = circuits[0].motion
     quantity = motion.series(name).quantity
     label = with_unit(printed_name(name), motion.units.of(quantity.kind))
@@ -161,7 +161,7 @@ def _draw(
 
 
 # ----------------------------------------------------------------------
-# The chart of a front: what a better value of the first goal costs in the others.
+# The chart of a front: how the other goals get worse as the first gets better.
 
 
 _TEXTS = 24  # numbers of designs that are written

@@ -69,7 +69,7 @@ class Column:
         The printed label without unit, and the unit as in tables.
     measure : str
         Kind of quantity: ``angle``, ``length``, ``velocity``; columns with equal measure and unit
-        share a panel. "" for numbers with a panel of their own.
+        share a panel. "" for numbers with a separate panel.
     values : array (N,)
         File units, NaN where there is no position.
     turn : float
@@ -115,14 +115,14 @@ def usual_columns(motion: Motion) -> tuple[str, ...]:
     Raises
     ------
     InputError
-        If there are none of these.
+        If the motion has none of these.
     """
     traced = [f"{point}.{axis}" for point in motion.skeleton.traced for axis in "xy"]
-    found = tuple(motion.unknowns) or tuple(motion.outputs) or tuple(traced)
-    found = found or coordinates_off_ground(motion)
-    if not found:
+    names = tuple(motion.unknowns) or tuple(motion.outputs) or tuple(traced)
+    names = names or coordinates_off_ground(motion)
+    if not names:
         raise InputError(f'"{motion.mechanism}" has no unknowns: name the columns to plot')
-    return found
+    return names
 
 
 def column_of(motion: Motion, name: str) -> Column:
@@ -140,63 +140,63 @@ def column_of(motion: Motion, name: str) -> Column:
     if name in _TEXTS:
         raise InputError(f'"{name}" is text and cannot be plotted')
     point = find_spelling(name, motion.points)
-    own = motion.quantities.own
-    if point in motion.points and find_spelling(name, own) not in own:
+    known = motion.quantities.own
+    if point in motion.points and find_spelling(name, known) not in known:
         raise InputError(
             f'"{point}" is a point: plot a coordinate, "{point}.x" or "{point}.y", or its '
             'path, kind="path" (--kind path)'
         )
-    asked = motion.quantity(name)
-    if asked.group is Group.EVIDENCE:
-        return _evidence(motion, asked)
-    if asked.rate is not None:
-        return _rate(motion, asked, asked.rate)
-    units, kind, lead = motion.units, asked.own.kind, lead_of(motion)
+    quantity = motion.quantity(name)
+    if quantity.group is Group.EVIDENCE:
+        return _evidence(motion, quantity)
+    if quantity.rate is not None:
+        return _rate(motion, quantity, quantity.rate)
+    units, kind, lead = motion.units, quantity.own.kind, lead_of(motion)
     turn = units.angle.turn if kind is Kind.ANGLE else 0.0
     slope = None
-    if asked.group is not Group.INPUT and kind is Kind.ANGLE:
+    if quantity.group is not Group.INPUT and kind is Kind.ANGLE:
         by_input = 1.0 if motion.input_units[lead] != units.angle.value else units.angle.radians
-        slope = asked.jet(motion).d1 * by_input / units.scale(kind)
+        slope = quantity.jet(motion).d1 * by_input / units.scale(kind)
     return Column(
-        name=asked.name,
-        label=printed_name(asked.name),
-        unit=asked.unit,
-        measure=asked.measure,
-        values=motion[asked.name],
+        name=quantity.name,
+        label=printed_name(quantity.name),
+        unit=quantity.unit,
+        measure=quantity.measure,
+        values=motion[quantity.name],
         turn=turn,
         slope=slope,
         size=turn or (_reach(motion) if kind is Kind.LENGTH else 1.0),
     )
 
 
-def _evidence(motion: Motion, asked: Asked) -> Column:
-    """A number about the positions found."""
+def _evidence(motion: Motion, quantity: Asked) -> Column:
+    """A number of the evidence of positions."""
     shown = motion.found
-    if asked.name == "condition":  # infinite at dead points, up to rounding
+    if quantity.name == "condition":  # infinite at dead points, up to rounding
         shown = shown & ~np.isin(motion.limit, ("dead point", "change point"))
-    values = np.where(shown, motion[asked.name].astype(float), np.nan)
-    label = asked.name.replace("_", " ")
+    values = np.where(shown, motion[quantity.name].astype(float), np.nan)
+    label = quantity.name.replace("_", " ")
     return Column(
-        name=asked.name,
+        name=quantity.name,
         label=label,
         unit="",
         measure="",
         values=values,
-        scale=_SCATTERED.get(asked.name, "log"),
-        dots=asked.name in _SCATTERED,
+        scale=_SCATTERED.get(quantity.name, "log"),
+        dots=quantity.name in _SCATTERED,
     )
 
 
-def _rate(motion: Motion, asked: Asked, rate: Rate) -> Column:
+def _rate(motion: Motion, quantity: Asked, rate: Rate) -> Column:
     """A rate of a quantity, or its magnitude for a point."""
-    own, of_point = asked.own, asked.group is Group.POINT
-    size = _reach(motion) if own.kind is Kind.LENGTH else 1.0
+    base, of_point = quantity.own, quantity.group is Group.POINT
+    size = _reach(motion) if base.kind is Kind.LENGTH else 1.0
     return Column(
-        name=asked.name,
-        label=(size_label if of_point else rate_label)(own.name, rate, lead_of(motion)),
-        unit=asked.unit,
-        measure=asked.measure,
-        values=motion[asked.name],
+        name=quantity.name,
+        label=(size_label if of_point else rate_label)(base.name, rate, lead_of(motion)),
+        unit=quantity.unit,
+        measure=quantity.measure,
+        values=motion[quantity.name],
         size=size * abs(motion.speed or 1.0) ** (rate.order if rate.by_time else 0),
     )
 
@@ -204,8 +204,8 @@ def _rate(motion: Motion, asked: Asked, rate: Rate) -> Column:
 def _reach(motion: Motion) -> float:
     """The typical length: the extent of the mechanism's points."""
     places = [series.value for pair in motion.points.values() for series in pair]
-    found = [p[np.isfinite(p)] for p in places]
-    return max((float(np.ptp(p)) for p in found if len(p)), default=0.0) or 1.0
+    finite = [p[np.isfinite(p)] for p in places]
+    return max((float(np.ptp(p)) for p in finite if len(p)), default=0.0) or 1.0
 
 
 def abscissa_of(motion: Motion, against: str = "") -> Column:

@@ -72,10 +72,10 @@ def motion_chart(
     UnknownNameError
         If a column does not exist.
     """
-    check_found(motion)
+    check_positions(motion)
     across = abscissa_of(motion, against)
     columns = columns_of(motion, names or [*usual_columns(motion), *motion.outputs])
-    draw = partial(draw_graph, motion, across, wrapped=wrapped, own=not against)
+    draw = partial(draw_graph, motion, across, wrapped=wrapped, alone=not against)
     return Chart(
         title=motion.mechanism,
         caption=reached_caption(motion),
@@ -83,7 +83,7 @@ def motion_chart(
     )
 
 
-def check_found(motion: Motion) -> None:
+def check_positions(motion: Motion) -> None:
     """Reject a motion without positions."""
     if not motion.found.any():
         raise InputError(f'"{motion.mechanism}" has no position to plot: {motion.message}')
@@ -91,8 +91,8 @@ def check_found(motion: Motion) -> None:
 
 def columns_of(motion: Motion, names: Sequence[str]) -> list[Column]:
     """The columns with these names, without duplicates."""
-    found = {column.name: column for column in (column_of(motion, name) for name in names)}
-    return list(found.values())
+    by_name = {column.name: column for column in (column_of(motion, name) for name in names)}
+    return list(by_name.values())
 
 
 def shared_panels(
@@ -149,7 +149,7 @@ def _span(column: Column) -> float:
 
 
 def _label(group: Sequence[Column]) -> str:
-    """The names of columns, or what they measure if there are too many."""
+    """The names of columns, or their common quantity if there are too many."""
     first = group[0]
     label = with_unit(", ".join(column.label for column in group), first.unit)
     if len(group) > 1 and text_width(label, 1.0) > _BESIDE:
@@ -164,10 +164,10 @@ def draw_graph(
     tone: int,
     axes: ChartAxes,
     *,
-    own: bool,
+    alone: bool,
     **options: bool,
 ) -> None:
-    """Columns over an abscissa; ``own``: it is the input, shown over its requested range.
+    """Columns over an abscissa; ``alone``: it is the input, shown over its requested range.
 
     ``options`` are those of :func:`draw_columns`.
     """
@@ -177,7 +177,7 @@ def draw_graph(
     set_scale(axes, "y", first.scale)
     axes.labels(with_unit(across.label, across.unit), _label(group))
     low, high = np.nanmin(across.values), np.nanmax(across.values)
-    if (own or across.measure == TIME) and low < high:
+    if (alone or across.measure == TIME) and low < high:
         axes.show_input(low, high)
     ends = _ends(motion, group, lines)
     if ends is not None:
@@ -190,7 +190,7 @@ def draw_graph(
 def _ends(
     motion: Motion, group: Sequence[Column], lines: Sequence[tuple[Array, Array]]
 ) -> tuple[float, float] | None:
-    """The range of constant, or of unbounded columns; ``None`` for all others."""
+    """The range of constant or of unbounded columns; ``None`` for other columns."""
     values = np.concatenate([y for _, y in lines])
     if group[0].scale != "linear" or not np.isfinite(values).any():
         return None
@@ -283,7 +283,7 @@ def polar_chart(motion: Motion, names: Sequence[str] = (), *, against: str = "")
     UnknownNameError
         If a column does not exist.
     """
-    check_found(motion)
+    check_positions(motion)
     across = abscissa_of(motion, against)
     if not across.turn:
         raise InputError(
@@ -367,7 +367,7 @@ def transmission_chart(motion: Motion, names: Sequence[str] = (), *, against: st
     UnknownNameError
         If a name is neither the pin of a dyad nor an angle.
     """
-    check_found(motion)
+    check_positions(motion)
     pins = {dyad.pin: dyad for dyad in dyads_of(motion.skeleton)}
     if not names and not pins:
         raise InputError(
@@ -375,7 +375,7 @@ def transmission_chart(motion: Motion, names: Sequence[str] = (), *, against: st
             'add it to [outputs], as in mu = "rocker - coupler", and name it'
         )
     columns = [_column(motion, pins, name) for name in names or pins]
-    draw = partial(_draw_transmission, motion, abscissa_of(motion, against), own=not against)
+    draw = partial(_draw_transmission, motion, abscissa_of(motion, against), alone=not against)
     return Chart(
         title=motion.mechanism,
         caption=reached_caption(motion),
@@ -390,11 +390,11 @@ def _draw_transmission(
     tone: int,
     axes: ChartAxes,
     *,
-    own: bool,
+    alone: bool,
 ) -> None:
     """From 0 to half a turn, with the recommended band and ticks at its ends."""
     unit = motion.units.angle
-    draw_graph(motion, across, group, tone, axes, own=own, legend=True)
+    draw_graph(motion, across, group, tone, axes, alone=alone, legend=True)
     low, high = (bound / unit.radians for bound in RECOMMENDED)
     named = f"{low:.0f}° to {high:.0f}°" if unit is AngleUnit.DEGREE else "2π/9 to 7π/9 rad"
     axes.band(low, high, f"recommended: {named}")

@@ -1,4 +1,4 @@
-"""Rows of a motion as lines: their gaps, their ranges, whole turns, and what covers them."""
+"""Rows of a motion as lines: their gaps, ranges and whole turns, and which lines overlap."""
 
 from __future__ import annotations
 
@@ -37,14 +37,14 @@ def breaks(motion: Motion, lead: Array, *columns: Column) -> BoolArray:
     """
     branch = np.array(motion.branch)
     dead = np.array(motion.limit) == _DEAD
-    found: BoolArray = (branch[1:] != branch[:-1]) | (dead[1:] & dead[:-1])
+    broken: BoolArray = (branch[1:] != branch[:-1]) | (dead[1:] & dead[:-1])
     steps = np.abs(np.diff(lead[motion.asked]))
     if len(steps):
-        found |= np.abs(np.diff(lead)) > _FURTHER * steps.max()
+        broken |= np.abs(np.diff(lead)) > _FURTHER * steps.max()
     for column in columns:
         if column.turn and column.slope is not None:
-            found |= _jumps(column, column.slope, np.diff(lead))
-    return found
+            broken |= _jumps(column, column.slope, np.diff(lead))
+    return broken
 
 
 def _jumps(column: Column, slope: Array, dx: Array) -> BoolArray:
@@ -65,17 +65,17 @@ def broken(values: Array, where: BoolArray) -> Array:
 
 def limits_on(motion: Motion, column: Column) -> dict[str, BoolArray]:
     """Rows of the dead points, change points and extremes of a column, by their kind."""
-    found: dict[str, BoolArray] = {}
+    limits: dict[str, BoolArray] = {}
     for kind in dict.fromkeys(motion.limit):
         word, _, of = kind.partition(" of ")
         if kind and (not of or of == column.name):
             rows = np.array(motion.limit) == kind
-            found[word] = rows | found.get(word, np.zeros_like(rows))
-    return found
+            limits[word] = rows | limits.get(word, np.zeros_like(rows))
+    return limits
 
 
 # ----------------------------------------------------------------------
-# Ranges of curves: rounding errors are not magnified, and what is unbounded leaves its panel.
+# Ranges of curves: rounding errors are not magnified, and unbounded curves leave their panel.
 
 
 _LEVEL = 1e-9  # of its size: maximum variation of a constant quantity
@@ -220,16 +220,16 @@ def covering(lines: Sequence[tuple[Array, Array]], groups: Sequence[int]) -> lis
     size = np.where(high > low, high - low, 1.0)
     squares = [_squares((np.stack(line, axis=1) - low) / size / _NEAR) for line in lines]
     around = np.add.outer((-_COLUMN, 0, _COLUMN), (-1, 0, 1)).ravel()
-    near = [np.unique(np.add.outer(own, around)) for own in squares]
+    near = [np.unique(np.add.outer(cells, around)) for cells in squares]
     return [
         len(
             {
                 group
                 for group, other in zip(groups, near, strict=True)
-                if group > mine and len(own) and np.isin(own, other).mean() > _HIDDEN
+                if group > this and len(cells) and np.isin(cells, other).mean() > _HIDDEN
             }
         )
-        for own, mine in zip(squares, groups, strict=True)
+        for cells, this in zip(squares, groups, strict=True)
     ]
 
 

@@ -17,7 +17,7 @@ from linkwork.core.results.quantity import Kind, Rate
 from linkwork.writers.charts.axes import ChartAxes, tick_step
 from linkwork.writers.charts.chart import Chart, Panel
 from linkwork.writers.charts.columns import abscissa_of, lead_of, rate_label, with_unit
-from linkwork.writers.charts.kinds import check_found
+from linkwork.writers.charts.kinds import check_positions
 from linkwork.writers.charts.lines import breaks, broken
 
 _APART = 0.09  # of the larger side: minimum distance of the texts of stations
@@ -44,7 +44,7 @@ def path_chart(motion: Motion, points: Sequence[str] = ()) -> Chart:
     UnknownNameError
         If a point does not exist.
     """
-    check_found(motion)
+    check_positions(motion)
     names = _points(motion, points)
     paths = {name: motion.trace(name) for name in names}
     labels = with_unit("x", motion.units.length), with_unit("y", motion.units.length)
@@ -68,7 +68,7 @@ def hodograph_chart(motion: Motion, points: Sequence[str] = ()) -> Chart:
     UnknownNameError
         If a point does not exist.
     """
-    check_found(motion)
+    check_positions(motion)
     names = _points(motion, points)[: None if points else 1]
     by_time = motion.speed is not None
     rates = (Rate.VELOCITY, Rate.ACCELERATION) if by_time else (Rate.FIRST, Rate.SECOND)
@@ -81,11 +81,11 @@ def hodograph_chart(motion: Motion, points: Sequence[str] = ()) -> Chart:
     return _chart(motion, panels, names)
 
 
-def _points(motion: Motion, asked: Sequence[str]) -> list[str]:
+def _points(motion: Motion, requested: Sequence[str]) -> list[str]:
     if not motion.points:
         raise InputError(f'"{motion.mechanism}" has no points to plot: add [points]')
     usual = motion.skeleton.traced or _moving(motion)
-    names = [find_spelling(name, motion.points) for name in asked or usual]
+    names = [find_spelling(name, motion.points) for name in requested or usual]
     for name in names:
         if name not in motion.points:
             known = choices("points", motion.points, name)

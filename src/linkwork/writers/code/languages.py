@@ -205,7 +205,7 @@ OCTAVE = Syntax(
     | {name: f"{name}({{}}, {{}})" for name in ("atan2", "hypot", "min", "max")}
     | {
         "ln": "log({})", "^": "({})^({})", "radians": "radians({})", "degrees": "degrees({})",
-        "pi": "pi", "e": "exp(1)",
+        "pi": "pi", "e": "exp(1)"
     },
     sections={
         "closure": (
@@ -228,7 +228,7 @@ OCTAVE = Syntax(
             "  % Their derivatives by the leading input; angles in radians.\n"
             "  v1 = zeros(1, {n});\n  v2 = zeros(1, {n});\n  {body}\nend"
         ),
-        "call": "    @closure_{k}, @first_sides_{k}, @second_sides_{k};",
+        "call": "    @closure_{k}, @first_sides_{k}, @second_sides_{k};"
     },
     assign="{name} = {value};",
     constant="{name} = {value};",
@@ -244,7 +244,7 @@ OCTAVE = Syntax(
     comments=r"%[^\n]*",
     indent="  ",
     padded=False,
-    shared="p.{name}",
+    shared="p.{name}"
 )  # fmt: skip
 
 
@@ -470,7 +470,7 @@ def language_of(file: Path) -> Syntax:
     Raises
     ------
     InputError
-        If no programs are written in such a language.
+        If no programs are written in this language.
     """
     syntax = LANGUAGES.get(file.suffix.lower())
     if syntax is None:
@@ -493,7 +493,7 @@ def code_of(model: Model, motion: Motion, file: Path) -> str:
     Raises
     ------
     InputError
-        If there is no such language, or no formulas of the mechanism's equations.
+        If the language is not known, or the mechanism's equations have no formulas.
     """
     syntax = language_of(file)
     program = SolverProgram(model, motion, file.stem, syntax.reserved)
@@ -501,7 +501,7 @@ def code_of(model: Model, motion: Motion, file: Path) -> str:
 
 
 def _heading(program: SolverProgram) -> Iterator[str]:
-    """What the program computes, its units, and what it does not know."""
+    """The results of the program, its units, and its limits."""
     model, motion = program.model, program.motion
     units = model.units
     yield f"{model.description.name}."
@@ -509,8 +509,8 @@ def _heading(program: SolverProgram) -> Iterator[str]:
     yield f"Written by Linkwork {metadata.version('linkwork')}."
     yield f"Lengths in {units.length or 'the unit of the file'}, angles in {units.angle.value};"
     yield "derivatives are with respect to the leading input, with angles in radians."
-    found = int(motion.certified[motion.asked].sum())
-    yield f"Linkwork proved {found} of the {len(program.inputs)} positions of the table below;"
+    proved = int(motion.certified[motion.asked].sum())
+    yield f"Linkwork proved {proved} of the {len(program.inputs)} positions of the table below;"
     yield "this program computes them again, and any others near them, but proves nothing."
     for limit in motion.limits:
         yield f"{limit.kind.word.capitalize()} at {limit.input:.12g}."
@@ -531,7 +531,7 @@ def write_program(mechanism: Mechanism, path: str | Path, motion: Motion | None 
     Raises
     ------
     InputError
-        If there is no such language, no formulas of the mechanism's equations, or the file
+        If the language is not known, the mechanism's equations have no formulas, or the file
         cannot be written.
 
     Examples

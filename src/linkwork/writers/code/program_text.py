@@ -167,14 +167,14 @@ class FormulaText:
             case Negative():
                 return "-" + self._inside(node.operand, STRENGTH["*"], degrees)
             case Call():
-                given = [self.text(x, degrees) for x in node.arguments]
-                return self._call(node.function, given, degrees)
+                arguments = [self.text(x, degrees) for x in node.arguments]
+                return self._call(node.function, arguments, degrees)
             case Binary("^"):
                 return self._power(node, degrees)
             case Binary():
-                own = STRENGTH[node.operator]
-                left = self._inside(node.left, own, degrees)
-                right = self._inside(node.right, own + 1, degrees)
+                strength = STRENGTH[node.operator]
+                left = self._inside(node.left, strength, degrees)
+                right = self._inside(node.right, strength + 1, degrees)
                 if right.startswith("-"):  # no two operators in succession
                     right = f"({right})"
                 space = " " if node.operator in "+-" else ""
@@ -187,20 +187,20 @@ class FormulaText:
 
     def _power(self, node: Binary, degrees: bool) -> str:
         if node.right == NumberNode(2.0) and isinstance(node.left, Name):
-            own = self.text(node.left)
-            return f"({own}*{own})"
+            base = self.text(node.left)
+            return f"({base}*{base})"
         return self._call("^", [self.text(x, degrees) for x in (node.left, node.right)], degrees)
 
-    def _call(self, function: str, given: list[str], degrees: bool) -> str:
+    def _call(self, function: str, arguments: list[str], degrees: bool) -> str:
         forms = self.syntax.functions
         if function in ("min", "max"):
-            found = given[0]
-            for other in given[1:]:
-                found = forms[function].format(found, other)
-            return found
+            text = arguments[0]
+            for other in arguments[1:]:
+                text = forms[function].format(text, other)
+            return text
         if function in _OF_ANGLE and degrees:
-            given = [forms["radians"].format(*given)]
-        shown = forms[function].format(*given)
+            arguments = [forms["radians"].format(*arguments)]
+        shown = forms[function].format(*arguments)
         return forms["degrees"].format(shown) if function in _TO_ANGLE and degrees else shown
 
     def _inside(self, node: Node, least: int, degrees: bool) -> str:
@@ -245,11 +245,11 @@ class ProgramText:
         """
         sections = {**self.sections, "heading": "\n".join(map(_as_comment, heading))}
 
-        def fill(found: re.Match[str]) -> str:
-            text = _SECTION.sub(fill, sections[found[2] or found[3]])
-            space = found[1] or ""
+        def fill(match: re.Match[str]) -> str:
+            text = _SECTION.sub(fill, sections[match[2] or match[3]])
+            space = match[1] or ""
             lines = ((space + line).rstrip() for line in text.split("\n"))
-            return "\n".join(lines) if found[2] else text
+            return "\n".join(lines) if match[2] else text
 
         return _SECTION.sub(fill, self.syntax.text)
 
@@ -270,14 +270,14 @@ class ProgramText:
     # Places of variables in arrays, by the names of formulas
 
     @cached_property
-    def _places(self) -> dict[str, str]:
+    def _variables(self) -> dict[str, str]:
         """Where the values of unknowns and inputs are kept."""
         equations, at = self.program.model.equations, self.syntax.at
-        found = {v.symbol: at("q", k) for k, v in enumerate(equations.unknowns)}
-        return found | {v.symbol: at("u", k) for k, v in enumerate(equations.inputs)}
+        places = {v.symbol: at("q", k) for k, v in enumerate(equations.unknowns)}
+        return places | {v.symbol: at("u", k) for k, v in enumerate(equations.inputs)}
 
     @cached_property
-    def _rate_places(self) -> dict[str, str]:
+    def _rate_variables(self) -> dict[str, str]:
         """Where the derivatives of unknowns are kept."""
         return {
             rate_key(v.symbol, order): self.syntax.at(f"d{order}", k)
@@ -326,26 +326,26 @@ class ProgramText:
             "misfit": len(program.closure.released),
             "shown": len(self._shown),
         }
-        found = {f"{name}_count": str(count) for name, count in counts.items()}
-        found |= {f"last_{name}": str(max(count - 1, 0)) for name, count in counts.items()}
-        return found | {"first_extra": str(counts["m"] + 1)}
+        sizes = {f"{name}_count": str(count) for name, count in counts.items()}
+        sizes |= {f"last_{name}": str(max(count - 1, 0)) for name, count in counts.items()}
+        return sizes | {"first_extra": str(counts["m"] + 1)}
 
     @property
     def _of_blocks(self) -> dict[str, str]:
         """Functions, calls and unknowns of all blocks."""
         syntax, blocks = self.syntax, self.program.blocks
-        own = [tuple(k + syntax.first for k in block.unknowns) for block in blocks]
-        found = {
+        unknowns = [tuple(k + syntax.first for k in block.unknowns) for block in blocks]
+        replacements = {
             name: "\n".join(
                 form.format(k=k + 1, b=k, n=len(block.unknowns)) for k, block in enumerate(blocks)
             )
             for name, form in syntax.sections.items()
             if name.startswith("call")
         }
-        return found | {
+        return replacements | {
             "blocks": "\n".join(self._functions()),
-            "block_unknowns": self._lists(own),
-            "block_lists": ", ".join(map(syntax.listed, own)),
+            "block_unknowns": self._lists(unknowns),
+            "block_lists": ", ".join(map(syntax.listed, unknowns)),
             "block_sizes": syntax.listed([len(block.unknowns) for block in blocks]),
             "no_blocks": "" if blocks else syntax.sections.get("no blocks", ""),
         }
@@ -484,11 +484,11 @@ class ProgramText:
         return self.syntax.sections.get("locals", "").format(names=names) if names else ""
 
     def _begin(
-        self, lets: Lets, own: Sequence[CellFormula], places: Mapping[str, str]
+        self, lets: Lets, formulas: Sequence[CellFormula], places: Mapping[str, str]
     ) -> list[tuple[str, str]]:
         """Names of variables, then of sines and cosines."""
         of = self.program.names.of
-        used = {node.name for formula in own for node in names_in(formula.node)}
+        used = {node.name for formula in formulas for node in names_in(formula.node)}
         named = [(key, let) for key, let in lets.named if key in used]
         used |= {node.name for _, let in named for node in names_in(let.node)}
         body = [self._let(of[key], place) for key, place in places.items() if key in used]
@@ -503,7 +503,7 @@ class ProgramText:
     def _closure(self, block: BlockProgram) -> list[tuple[str, str]]:
         """F and J of a block."""
         lets, n = block.closure, len(block.unknowns)
-        body = self._begin(lets, lets.formulas, self._places)
+        body = self._begin(lets, lets.formulas, self._variables)
         body += [self._store(self.syntax.at("F", r), lets.formulas[r]) for r in range(n)]
         for r in range(n):
             for c in range(n):
@@ -515,39 +515,39 @@ class ProgramText:
     def _sides(self, block: BlockProgram, order: int) -> list[tuple[str, str]]:
         """The right-hand sides of one order of a block."""
         n = len(block.unknowns)
-        own = block.sides.formulas[(order - 1) * n : order * n]
-        body = self._begin(block.sides, own, self._places | self._rate_places)
-        return body + [self._store(self.syntax.at("F", r), side) for r, side in enumerate(own)]
+        sides = block.sides.formulas[(order - 1) * n : order * n]
+        body = self._begin(block.sides, sides, self._variables | self._rate_variables)
+        return body + [self._store(self.syntax.at("F", r), side) for r, side in enumerate(sides)]
 
     @cached_property
     def _results(self) -> list[tuple[str, str]]:
         """The identifiers of all columns but inputs, and their places in arrays."""
         of, at, equations = self.program.names.of, self.syntax.at, self.program.model.equations
         symbols = {k: equations.unknowns[k].symbol for k in self._shown}
-        found = [(of[symbol], at("q", k)) for k, symbol in symbols.items()]
-        found += [(d.name, at("v", k)) for k, d in enumerate(self.program.derived)]
+        results = [(of[symbol], at("q", k)) for k, symbol in symbols.items()]
+        results += [(d.name, at("v", k)) for k, d in enumerate(self.program.derived)]
         for order in (1, 2):
-            found += [(of[rate_key(s, order)], at(f"d{order}", k)) for k, s in symbols.items()]
-            found += [
+            results += [(of[rate_key(s, order)], at(f"d{order}", k)) for k, s in symbols.items()]
+            results += [
                 (of[rate_key(self.program.derived[k].key, order)], at(f"v{order}", row))
                 for row, k in enumerate(self._with_rates)
             ]
-        return found
+        return results
 
     def _misfits(self) -> list[tuple[str, str]]:
         """The errors of redundant links."""
         released = self.program.closure.released
         errors = [
-            CellFormula(Binary("-", Name(canonical(link.variable)), given.node))
-            for link, given in released
+            CellFormula(Binary("-", Name(canonical(link.variable)), formula.node))
+            for link, formula in released
         ]
-        body = self._begin(Lets(), errors, self._places)
+        body = self._begin(Lets(), errors, self._variables)
         return body + [self._store(self.syntax.at("w", k), e) for k, e in enumerate(errors)]
 
     def _derived(self) -> list[tuple[str, str]]:
         derived = self.program.derived
         formulas = [part.formula for part in derived]
-        body = self._begin(Lets(), formulas, self._places)
+        body = self._begin(Lets(), formulas, self._variables)
         for k, part in enumerate(derived):
             body.append(self._let(part.name, self._formula.of(part.formula)))
             place = self.syntax.at("v", k)
@@ -555,12 +555,12 @@ class ProgramText:
         return body
 
     def _derived_rates(self) -> list[tuple[str, str]]:
-        """First, then second derivatives of what is computed from the unknowns."""
+        """First, then second derivatives of the quantities computed from the unknowns."""
         of, syntax = self.program.names.of, self.syntax
         parts = [(self.program.derived[k], row) for row, k in enumerate(self._with_rates)]
         formulas = [rate for part, _ in parts for rate in part.rates or ()]
         values = {d.key: syntax.at("v", k) for k, d in enumerate(self.program.derived)}
-        body = self._begin(Lets(), formulas, self._places | self._rate_places | values)
+        body = self._begin(Lets(), formulas, self._variables | self._rate_variables | values)
         for order in (1, 2):
             for part, row in parts:
                 assert part.rates is not None
@@ -572,7 +572,7 @@ class ProgramText:
 
 
 def _as_comment(line: str) -> str:
-    """A line without what would end a comment."""
+    """A line without characters that would end a comment."""
     plain = "".join(letter if letter.isprintable() else " " for letter in line)
     for end, instead in _ENDS:
         plain = plain.replace(end, instead)

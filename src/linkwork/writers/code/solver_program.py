@@ -40,9 +40,9 @@ class Identifiers:
     of: dict[str, str] = field(default_factory=dict)
     _used: set[str] = field(default_factory=set)
 
-    def claim(self, key: str, wanted: str) -> str:
+    def claim(self, key: str, preferred: str) -> str:
         """An identifier for ``key``, as similar as possible to the preferred one."""
-        plain = unicodedata.normalize("NFKD", canonical(wanted).replace("'", "_prime"))
+        plain = unicodedata.normalize("NFKD", canonical(preferred).replace("'", "_prime"))
         stem = _ODD.sub("_", plain.encode("ascii", "ignore").decode()).strip("_")[
             :_IDENTIFIERS_LONGEST
         ]
@@ -86,7 +86,7 @@ class BlockProgram:
     closure : Lets
         F of every row; then the derivatives by every unknown, row by row.
     sides : Lets
-        First, then second derivatives of every row with the block's own rates at 0.
+        First, then second derivatives of every row with the rates of the block at 0.
     """
 
     titles: tuple[str, ...]
@@ -188,7 +188,7 @@ class SolverProgram:
 
     @cached_property
     def dimensions(self) -> list[Dimension]:
-        """The dimensions that formulas use, those that others are computed from first."""
+        """The dimensions that formulas use, ordered so that each follows those in its formula."""
         used = {node.name for formula in self._formulas() for node in names_in(formula.node)}
         for dimension in reversed(self.closure.traced.dimensions):
             if dimension.key in used and dimension.formula is not None:
@@ -200,7 +200,7 @@ class SolverProgram:
         yield from (part.formula for part in closure.coefficients.values())
         yield from (formula for pair in closure.points.values() for formula in pair)
         yield from (*closure.links.values(), *closure.outputs.values())
-        yield from (given for _, given in closure.released)
+        yield from (stated for _, stated in closure.released)
         yield from (formula for pair in self.rates.of.values() for formula in pair)
         for block, sides in zip(closure.blocks, self.rates.sides, strict=True):
             yield from (formula for pair in sides for formula in pair)
@@ -237,16 +237,16 @@ class SolverProgram:
     @cached_property
     def stretches(self) -> tuple[Stretch, ...]:
         """The rows with a position, branch by branch."""
-        found, stretches = self.motion.found[self.motion.asked], []
+        solved, stretches = self.motion.found[self.motion.asked], []
         branch = np.array(self.motion.branch)[self.motion.asked]
         q = self.motion.q[self.motion.asked] / np.array(self.units)
         first = 0
-        for k in range(1, len(found) + 1):
-            goes_on = k < len(found) and found[k] and branch[k] == branch[k - 1]
-            if not goes_on or not found[first]:
-                if found[first]:
-                    own = tuple(map(float, q[first]))
-                    stretches.append(Stretch(first=first, last=k - 1, unknowns=own))
+        for k in range(1, len(solved) + 1):
+            goes_on = k < len(solved) and solved[k] and branch[k] == branch[k - 1]
+            if not goes_on or not solved[first]:
+                if solved[first]:
+                    unknowns = tuple(map(float, q[first]))
+                    stretches.append(Stretch(first=first, last=k - 1, unknowns=unknowns))
                 first = k
         return tuple(stretches)
 
@@ -297,18 +297,18 @@ class SolverProgram:
 
     @cached_property
     def derived(self) -> tuple[Derived, ...]:
-        """Links that turn with others, points and outputs, each after those it is made of."""
-        closure, found = self.closure, []
+        """Links that turn with other links, points and outputs, each after its operands."""
+        closure, derived = self.closure, []
         for link, formula in closure.links.items():
-            found.append(self._derived(link, canonical(link), Kind.ANGLE, formula))
+            derived.append(self._derived(link, canonical(link), Kind.ANGLE, formula))
         for point, pair in closure.points.items():
             for axis, formula in zip("xy", pair, strict=True):
                 key = coordinate_name(point, axis)
-                found.append(self._derived(f"{point}.{axis}", key, Kind.LENGTH, formula))
+                derived.append(self._derived(f"{point}.{axis}", key, Kind.LENGTH, formula))
         for name, formula in closure.outputs.items():
             kind = Kind(self.model.equations.outputs[name].kind)
-            found.append(self._derived(name, f"output {name}", kind, formula))
-        return tuple(found)
+            derived.append(self._derived(name, f"output {name}", kind, formula))
+        return tuple(derived)
 
     def _derived(self, title: str, key: str, kind: Kind, formula: CellFormula) -> Derived:
         return Derived(

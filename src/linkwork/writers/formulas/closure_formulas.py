@@ -99,13 +99,13 @@ class _Writer:
             return self.cells[node.name]
         return {"pi": "PI()", "e": "EXP(1)"}[node.name]
 
-    def _call(self, function: str, given: list[str]) -> str:
-        listed = ",".join(given)
+    def _call(self, function: str, arguments: list[str]) -> str:
+        listed = ",".join(arguments)
         if function == "hypot":
             # spreadsheets have no hypot
-            return f"SQRT(({given[0]})^2+({given[1]})^2)"
+            return f"SQRT(({arguments[0]})^2+({arguments[1]})^2)"
         if function == "atan2":  # spreadsheets take x first
-            listed = f"{given[1]},{given[0]}"
+            listed = f"{arguments[1]},{arguments[0]}"
         if function in _OF_ANGLE and self.degrees:
             listed = f"RADIANS({listed})"
         shown = f"{function.upper()}({listed})"
@@ -142,13 +142,13 @@ def _value(node: Node, names: Mapping[str, Any], radians: float) -> Any:
             right = np.asarray(_value(node.right, names, radians), dtype=float)
             return _OPERATIONS[node.operator](left, right)
         case Call():
-            given = [_value(part, names, radians) for part in node.arguments]
+            arguments = [_value(part, names, radians) for part in node.arguments]
             if node.function in _CONVERSIONS:
-                return _CONVERSIONS[node.function](*given)
+                return _CONVERSIONS[node.function](*arguments)
             if node.function in _OF_ANGLE:
-                given = [given[0] * radians]
-            found = FUNCTIONS[node.function](*given)
-            return found / radians if node.function in _TO_ANGLE else found
+                arguments = [arguments[0] * radians]
+            value = FUNCTIONS[node.function](*arguments)
+            return value / radians if node.function in _TO_ANGLE else value
 
 
 _OPERATIONS: dict[str, Callable[[Any, Any], Any]] = {
@@ -161,17 +161,17 @@ _OPERATIONS: dict[str, Callable[[Any, Any], Any]] = {
 # The rows of Newton-Raphson as formulas: equations, Jacobian, points, outputs.
 #
 # Formulas refer to unknowns and inputs by symbol, in file units, and to dimensions by key. Long
-# coefficients have their own cells.
+# coefficients have separate cells.
 
 
-_MOST_NODES = 7  # longer coefficients get their own cell
+_MOST_NODES = 7  # longer coefficients get a separate cell
 _OF_CELLS = 40, 7_000  # unknowns of a block, characters: a cell takes 8,192
 _PER_NODE, _PER_PART = 4, 24  # characters at most: parentheses; a number or a function
 
 
 @dataclass(frozen=True, kw_only=True)
 class Coefficient:
-    """A number computed from dimensions in its own cell; ``key`` is its name in formulas."""
+    """A number computed from dimensions in a cell; ``key`` is its name in formulas."""
 
     key: str
     wanted: str
@@ -252,18 +252,18 @@ class ClosureFormulas:
 
     # Coefficients
 
-    def _coefficient(self, form: LinearForm, wanted: str) -> LinearForm:
+    def _coefficient(self, form: LinearForm, preferred: str) -> LinearForm:
         """The form, or the name of its cell."""
         if form.fixed and _is_short(form.constant):
             return form
-        if not form.fixed and _size(form.node) <= _MOST_NODES and _plain(form.node):
+        if not form.fixed and _size(form.node) <= _MOST_NODES and _is_simple(form.node):
             return form
         weight = -1.0 if isinstance(form.node, Negative) else 1.0
         node = (form * weight).node
         if node not in self.coefficients:
             key = f"coefficient {len(self.coefficients) + 1}"
             formula = CellFormula(node)
-            self.coefficients[node] = Coefficient(key=key, wanted=wanted, formula=formula)
+            self.coefficients[node] = Coefficient(key=key, wanted=preferred, formula=formula)
         return LinearForm.named(self.coefficients[node].key) * weight
 
     def _parts(self, term: Term) -> tuple[LinearForm, LinearForm]:
@@ -294,8 +294,8 @@ class ClosureFormulas:
         c, s = cosine(angle), sine(angle)
         x, y = re * c - im * s, re * s + im * c
         if length and term.length is not None:
-            own = LinearForm.named(term.length)
-            x, y = own * x, own * y
+            size = LinearForm.named(term.length)
+            x, y = size * x, size * y
         return x, y
 
     def _slope(self, term: Term, symbol: str) -> tuple[LinearForm, LinearForm]:
@@ -316,26 +316,26 @@ class ClosureFormulas:
         try:
             if len(symbols) > self.most_unknowns:
                 raise NoFormula(f"more than {self.most_unknowns} unknowns depend on each other")
-            rows = tuple(row for k in equations for row in self._rows(k, symbols))
+            rows = tuple(row for k in equations for row in self._rows_of_equation(k, symbols))
             for row in rows:
                 self.check_length(row.formula, *row.slopes)
         except NoFormula as error:
             return BlockFormulas(unknowns=unknowns, reason=str(error))
         return BlockFormulas(unknowns=unknowns, rows=rows)
 
-    def _rows(self, number: int, symbols: list[str]) -> Iterator[Row]:
+    def _rows_of_equation(self, number: int, symbols: list[str]) -> Iterator[Row]:
         """The real rows of an equation, numbered as they are printed."""
-        found = self.traced.equations
-        loops, lines, plain = len(found.loops), len(found.linear), len(found.real)
+        traced = self.traced.equations
+        loops, lines, plain = len(traced.loops), len(traced.linear), len(traced.real)
         if number < loops:
             yield from self._loop_rows(number, symbols)
         elif number < loops + lines:
-            yield self._linear_row(found.linear[number - loops], f"F{number + loops + 1}", symbols)
+            yield self._linear_row(traced.linear[number - loops], f"F{number + loops + 1}", symbols)
         elif number < loops + lines + plain:
-            equation = found.real[number - loops - lines]
+            equation = traced.real[number - loops - lines]
             yield self._real_row(equation, f"F{number + loops + 1}", symbols)
         else:
-            law = found.laws[number - loops - lines - plain]
+            law = traced.laws[number - loops - lines - plain]
             raise NoFormula(f'"{law.label}" is a motion law or a curve, given piece by piece')
 
     def _loop_rows(self, number: int, symbols: list[str]) -> Iterator[Row]:
@@ -418,8 +418,8 @@ class NoFormula(Exception):
 
 def _total(parts: Iterator[tuple[LinearForm, LinearForm]]) -> tuple[LinearForm, LinearForm]:
     x, y = LinearForm(), LinearForm()
-    for own_x, own_y in parts:
-        x, y = x + own_x, y + own_y
+    for part_x, part_y in parts:
+        x, y = x + part_x, y + part_y
     return x, y
 
 
@@ -446,7 +446,7 @@ def _size(node: Node) -> int:
     return sum(1 for _ in _parts_of(node))
 
 
-def _plain(node: Node) -> bool:
+def _is_simple(node: Node) -> bool:
     """Whether a formula is simple: no functions, long numbers or quotients."""
     return all(
         not isinstance(part, Call)

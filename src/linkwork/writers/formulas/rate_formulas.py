@@ -34,8 +34,8 @@ def rate_key(quantity: str, order: int) -> str:
 class RateFormulas:
     """The right-hand sides of every block, and the rates of links, points and outputs.
 
-    ``sides[block]`` has velocity and acceleration of every row with the rates of the block's own
-    unknowns at 0, and nothing without formulas; ``of`` the rates of other quantities by key, as
+    ``sides[block]`` has velocity and acceleration of every row with the rates of the unknowns of
+    the block at 0, and nothing without formulas; ``of`` the rates of other quantities by key, as
     far as they have formulas.
     """
 
@@ -50,9 +50,9 @@ class RateFormulas:
         for (numbers, unknowns), block in zip(
             self.closure.model.compiled.form.blocks, self.closure.blocks, strict=True
         ):
-            own = {equations.unknowns[k].symbol for k in unknowns}
+            solved = {equations.unknowns[k].symbol for k in unknowns}
             try:
-                pairs = (pair for k in numbers for pair in self._side(k, own))
+                pairs = (pair for k in numbers for pair in self._side(k, solved))
                 self.sides.append(tuple(pairs) if block.rows else ())
             except NoFormula:
                 self.sides.append(())
@@ -69,25 +69,25 @@ class RateFormulas:
 
     # Right-hand sides
 
-    def _side(self, number: int, own: set[str]) -> Iterator[Pair]:
+    def _side(self, number: int, solved: set[str]) -> Iterator[Pair]:
         """The rates of the rows of one equation."""
-        found = self.closure.traced.equations
-        loops, lines = len(found.loops), len(found.linear)
+        equations = self.closure.traced.equations
+        loops, lines = len(equations.loops), len(equations.linear)
         if number < loops:
-            terms = found.loops[number].terms
-            x1, y1 = _total(self._velocity(term, self._every - own) for term in terms)
-            x2, y2 = _total(self._acceleration(term, self._moved - own) for term in terms)
+            terms = equations.loops[number].terms
+            x1, y1 = _total(self._velocity(term, self._every - solved) for term in terms)
+            x2, y2 = _total(self._acceleration(term, self._moved - solved) for term in terms)
             yield CellFormula(x1.node), CellFormula(x2.node)
             yield CellFormula(y1.node), CellFormula(y2.node)
         elif number < loops + lines:
-            weights = found.linear[number - loops].terms
-            first = self._turning(weights, 1, self._every - own)
-            second = self._turning(weights, 2, self._moved - own)
+            weights = equations.linear[number - loops].terms
+            first = self._turning(weights, 1, self._every - solved)
+            second = self._turning(weights, 2, self._moved - solved)
             yield CellFormula(first.node), CellFormula(second.node)
         else:
-            equation = found.real[number - loops - lines]
+            equation = equations.real[number - loops - lines]
             whole = Binary("-", equation.left, equation.right)
-            yield self._differentiated(whole, held=own)
+            yield self._differentiated(whole, held=solved)
 
     @staticmethod
     def _turning(weights: Iterable[tuple[str, float]], order: int, symbols: set[str]) -> LinearForm:
@@ -214,8 +214,8 @@ def _scaled(
 
 def _total(parts: Iterable[Vector]) -> Vector:
     x, y = _ZERO, _ZERO
-    for own_x, own_y in parts:
-        x, y = x + own_x, y + own_y
+    for part_x, part_y in parts:
+        x, y = x + part_x, y + part_y
     return x, y
 
 
@@ -235,33 +235,33 @@ def dimension_kinds(traced: TracedEquations) -> dict[str, Kind]:
     argument of a sine is an angle. A factor of a product of dimensions is left open, and so is a
     dimension that is used as two kinds.
     """
-    found = _Kinds()
+    kinds = _Kinds()
     equations = traced.equations
-    for form, kind in _given(traced):
-        found.read(form, kind)
+    for form, kind in _known_kinds(traced):
+        kinds.read(form, kind)
     for line in equations.linear:
         kind = Kind.ANGLE if line.kind == "angle" else Kind.LENGTH
-        found.read(forms_of(line.constant)[0].node, kind)
+        kinds.read(forms_of(line.constant)[0].node, kind)
     for angle in equations.links.values():
-        found.read(forms_of(angle.constant)[0].node, Kind.ANGLE)
+        kinds.read(forms_of(angle.constant)[0].node, Kind.ANGLE)
     for dimension in traced.dimensions:
         if dimension.kind in _KINDS and dimension.formula is not None:
-            found.read(dimension.formula, _KINDS[dimension.kind])
+            kinds.read(dimension.formula, _KINDS[dimension.kind])
     for _ in traced.dimensions:  # a chain of derived dimensions is as long as their number
-        known = len(found.of)
+        known = len(kinds.of)
         for dimension in traced.dimensions:
             if dimension.formula is None:
                 continue
-            own = found.of.get(dimension.key) or found.kind_of(dimension.formula)
-            if own is not None:
-                found.read(Name(dimension.key), own)
-                found.read(dimension.formula, own)
-        if len(found.of) == known:
+            dimension_kind = kinds.of.get(dimension.key) or kinds.kind_of(dimension.formula)
+            if dimension_kind is not None:
+                kinds.read(Name(dimension.key), dimension_kind)
+                kinds.read(dimension.formula, dimension_kind)
+        if len(kinds.of) == known:
             break
-    return {key: kind for key, kind in found.of.items() if kind is not None}
+    return {key: kind for key, kind in kinds.of.items() if kind is not None}
 
 
-def _given(traced: TracedEquations) -> Iterator[tuple[Node, Kind]]:
+def _known_kinds(traced: TracedEquations) -> Iterator[tuple[Node, Kind]]:
     """The coefficients of all vectors with their kinds."""
     equations = traced.equations
     terms: list[Term] = [term for loop in equations.loops for term in loop.terms]
@@ -279,7 +279,7 @@ class _Kinds:
     of: dict[str, Kind | None] = field(default_factory=dict)
 
     def read(self, node: Node, kind: Kind) -> None:
-        """Note what the parts of a formula of a kind must be."""
+        """Derive the kinds of the parts of a formula from the kind of the formula."""
         match node:
             case Name():
                 known = self.of.setdefault(node.name, kind)

@@ -80,11 +80,11 @@ class _FormArithmetic(Arithmetic["LinearForm"]):
         if not x.constant and None not in reduced:
             parts = zip(reduced, x.terms, strict=True)
             return sum(
-                (_weigh(form, own / weight) for form, (_, own) in parts if form is not None),
+                (_weigh(form, top / weight) for form, (_, top) in parts if form is not None),
                 LinearForm(),
             )
-        above, own = _factored(x)
-        return _weigh(LinearForm.of(Binary("/", above, below)), own / weight)
+        above, top = _factored(x)
+        return _weigh(LinearForm.of(Binary("/", above, below)), top / weight)
 
 
 @dataclass(frozen=True)
@@ -129,11 +129,11 @@ class LinearForm(Operand):
             constant = (self.constant < 0.0, NumberNode(abs(self.constant)))
             first = bool(parts) and parts[0][0] and not constant[0]
             parts = [constant, *parts] if first else [*parts, constant]
-        minus, found = parts[0]
-        found = Negative(found) if minus else found
+        minus, total = parts[0]
+        total = Negative(total) if minus else total
         for minus, part in parts[1:]:
-            found = Binary("-" if minus else "+", found, part)
-        return found
+            total = Binary("-" if minus else "+", total, part)
+        return total
 
     def per(self, unit: float) -> LinearForm | None:
         """The form with all numbers divided by a unit, if the results are short numbers."""
@@ -157,8 +157,8 @@ class LinearForm(Operand):
         rest = tuple((n, w) for n, w in self.terms if _short(w / _DEGREE) is None)
         constant = _short(self.constant / _DEGREE)
         in_file_unit = LinearForm(constant or 0.0, tuple(in_degrees))
-        own = LinearForm.of(Call("radians", (in_file_unit.node,)))
-        return (own + LinearForm(self.constant if constant is None else 0.0, rest)).node
+        converted = LinearForm.of(Call("radians", (in_file_unit.node,)))
+        return (converted + LinearForm(self.constant if constant is None else 0.0, rest)).node
 
     @property
     def in_degrees(self) -> Node:
@@ -193,8 +193,8 @@ def _without(node: Node, factor: Node) -> LinearForm | None:
         return LinearForm(1.0)
     match node:
         case Binary("*"):
-            for own, other in ((node.left, node.right), (node.right, node.left)):
-                if own == factor:
+            for side, other in ((node.left, node.right), (node.right, node.left)):
+                if side == factor:
                     return LinearForm.of(other)
         case Binary("^") if node.left == factor and node.right == NumberNode(2.0):
             return LinearForm.of(factor)
@@ -260,7 +260,7 @@ class Trace(Consensus):
         return TracedNumber(np.asarray(values), self, re, im)
 
     def plain(self, number: complex) -> TracedNumber:
-        """A plain number, which is its own formula."""
+        """A plain number; its formula is the number."""
         z = complex(number)
         return self.make([number], LinearForm(z.real), LinearForm(z.imag))
 
@@ -269,13 +269,13 @@ class Trace(Consensus):
         return self.plain(yes if truths.values[0] else no)
 
     def settle(self, number: TracedNumber) -> Any:
-        """The plain number, noted as such."""
+        """The plain number, which is recorded as settled."""
         if not number.re.fixed:
             self.settled[number.re.node] = None
         return super().settle(number)
 
     def value_of(self, number: TracedNumber) -> Any:
-        """The number with its formula: what needs a plain one refuses it later."""
+        """The number with its formula; code that needs a plain number refuses it later."""
         return number
 
     def estimate(self, number: Any) -> Any:
@@ -288,9 +288,9 @@ class Trace(Consensus):
             return self._choose(*numbers)
         if function not in _FORMULAS:
             raise NotElementwise
-        given = [self.operand(number) for number in numbers]
-        values = function(*(number.values for number in given))
-        return _FORMULAS[function](self, values, *given)
+        operands = [self.operand(number) for number in numbers]
+        values = function(*(number.values for number in operands))
+        return _FORMULAS[function](self, values, *operands)
 
     def _choose(self, condition: object, yes: object, no: object) -> TracedNumber:
         """The number that holds by its value; where both are one, the one with a formula."""
@@ -492,21 +492,21 @@ def forms_of(z: object) -> tuple[LinearForm, LinearForm]:
 def traced(description: Description) -> TracedEquations:
     """The equations with all dimensions traced for which the builder has formulas."""
     plain = _without_tables(description)
-    asked = list(_dimensions(description))
-    live = asked
-    found = _built(plain, live)
-    if found is None:
-        live = [q for q in asked if _built(plain, [q]) is not None]
-        found = _built(plain, live)
-    if found is None:
+    varied = list(_dimensions(description))
+    live = varied
+    built = _built(plain, live)
+    if built is None:
+        live = [q for q in varied if _built(plain, [q]) is not None]
+        built = _built(plain, live)
+    if built is None:
         live = []
-        found = _built(plain, [])
-    assert found is not None
-    equations, trace = found
+        built = _built(plain, [])
+    assert built is not None
+    equations, trace = built
     used = {_key(q) for q in live}
     return TracedEquations(
         equations=equations,
-        dimensions=tuple(_dimension(description, q, _key(q) in used) for q in asked),
+        dimensions=tuple(_dimension(description, q, _key(q) in used) for q in varied),
         settled=tuple(dict.fromkeys(n.name for node in trace.settled for n in names_in(node))),
     )
 
@@ -569,13 +569,13 @@ def _dimension(description: Description, quantity: VariedNumber, live: bool) -> 
 
 
 def _built(
-    description: Description, asked: Sequence[VariedNumber]
+    description: Description, varied: Sequence[VariedNumber]
 ) -> tuple[LoopEquations, Trace] | None:
     """The equations with these numbers traced; ``None`` if the builder has no formulas."""
     trace = Trace()
     numbers = {
         quantity: trace.number(quantity.of(description), LinearForm.named(_key(quantity)))
-        for quantity in asked
+        for quantity in varied
     }
     try:
         with np.errstate(all="ignore"):

@@ -24,7 +24,7 @@ _SLACK = 1.0 + 1e-9  # covers the rounding of a few products
 
 
 def variables_of_all(model: Model, motion: Motion) -> Array:
-    """All variables of the mechanism with its own inputs, also where time drives it, (B, N)."""
+    """All variables of the mechanism with its inputs, also where time drives it, (B, N)."""
     if model.untimed is not None:
         return Geometry(model, motion).variables[motion.found]
     return variables_of(model, motion)
@@ -50,8 +50,8 @@ class BodyPoses:
         index = {v.symbol: k for k, v in numbered} | {v.name: k for k, v in numbered}
         angles = {body: equations.links[body] for body in self.bodies}
         self._angle = {
-            body: (None if own.variable is None else index[own.variable], own.constant)
-            for body, own in angles.items()
+            body: (None if angle.variable is None else index[angle.variable], angle.constant)
+            for body, angle in angles.items()
         }
 
     @cached_property
@@ -65,12 +65,12 @@ class BodyPoses:
         """Origin [mm] and direction of every body in positions (B, N)."""
         places = self.millimetres * self.model.compiled.points.places(v)
         one = np.ones(len(v), dtype=complex)
-        found: dict[str, tuple[ComplexArray, ComplexArray]] = {GROUND: (one - one, one)}
+        poses: dict[str, tuple[ComplexArray, ComplexArray]] = {GROUND: (one - one, one)}
         for body in self.bodies:
             k, constant = self._angle[body]
             turn = np.full(len(v), constant) if k is None else constant + v[:, k]
-            found[body] = (places[:, self._origin[body]], np.cos(turn) + 1j * np.sin(turn))
-        return found
+            poses[body] = (places[:, self._origin[body]], np.cos(turn) + 1j * np.sin(turn))
+        return poses
 
     def spread(self, boxes: Boxes) -> dict[str, tuple[Array, Array]]:
         """How far every body's origin moves [mm] and turns [rad] at most in boxes, (B,) each."""
@@ -80,16 +80,16 @@ class BodyPoses:
     def _spread(self, boxes: Boxes) -> dict[str, tuple[Array, Array]]:
         points = self.millimetres * motions_of_points(self.model, boxes).moved
         nothing = np.zeros(len(boxes))
-        found = {GROUND: (nothing, nothing)}
+        spreads = {GROUND: (nothing, nothing)}
         for body in self.bodies:
             k, _ = self._angle[body]
             turn = nothing if k is None else boxes.bound[:, k] * _SLACK
-            found[body] = (points[:, self._origin[body]], np.minimum(turn, math.pi))
-        return found
+            spreads[body] = (points[:, self._origin[body]], np.minimum(turn, math.pi))
+        return spreads
 
 
 # ----------------------------------------------------------------------
-# Rigid bodies to be made of plates, and the straight slots in which others slide.
+# Rigid bodies to be made of plates, and the straight slots in which bodies slide.
 
 
 _TOGETHER = 1e-9  # of a distance
@@ -133,18 +133,18 @@ def _pairs(linkage: Linkage) -> Iterator[Pair]:
     for part in linkage.parts:
         if not _is_made(part, linkage):
             raise InputError(f'"{part.label}" ({part.title.lower()}) cannot be made of plates')
-        found = part.pairs(linkage)
-        yield from () if found is None else found.pairs
+        pairs = part.pairs(linkage)
+        yield from () if pairs is None else pairs.pairs
 
 
 def _is_made(part: Part, linkage: Linkage) -> bool:
     """Whether plates are known for a part: pins, slides, gears, racks, cams with rollers."""
-    found = part.pairs(linkage)
+    pairs = part.pairs(linkage)
     kinds = {figure.kind for figure in part.figures(linkage, {}) if isinstance(figure, DiscFigure)}
-    if found is None:
+    if pairs is None:
         return kinds == {"roller"}
-    geared = not found.couplings or kinds == {"gear"}
-    return geared and all(body.on for body in found.bodies)
+    geared = not pairs.couplings or kinds == {"gear"}
+    return geared and all(body.on for body in pairs.bodies)
 
 
 def same_place(a: complex, b: complex) -> bool:
@@ -162,7 +162,7 @@ def _seen(poses: Poses, body: str, other: str, place: complex) -> complex:
 class Guideway:
     """A straight slot in the body ``on``: displacement s is at ``origin`` + s · ``along`` [mm].
 
-    ``runner`` slides in it with pins at ``places`` of its own frame; ``reach``: how far these are
+    ``runner`` slides in it with pins at ``places`` in its frame; ``reach``: how far these are
     before and behind the place of displacement s.
     """
 
@@ -200,7 +200,7 @@ def guideways(
         on = bodies[pair.bodies[0]]
         first, second = (on.places[point] for point in pair.line)
         along = (second - first) / abs(second - first)
-        # a pin in a slot has a block of its own, which turns on the pin
+        # a pin in a slot has a block, which turns on the pin
         block = [p for p in pairs if p.kind is PairKind.PIN and p.bodies[0] == pair.bodies[1]]
         runner = bodies[block[0].bodies[1] if block else pair.bodies[1]]
         place = runner.places[pair.point]

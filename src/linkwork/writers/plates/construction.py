@@ -1,4 +1,4 @@
-"""The plates and pins of a linkage: what every body consists of, before layers are chosen."""
+"""The plates and pins of every body of a linkage, before layers are chosen."""
 
 from __future__ import annotations
 
@@ -86,23 +86,25 @@ class Construction:
         placed = BodyPoses(model, list(linkage.links), mm).of(first)
         poses = {link: (complex(z[0]), complex(turn[0])) for link, (z, turn) in placed.items()}
         bodies = rigid_bodies(linkage, mm, poses)
-        holes = {name: dict(_holes(model, own, bodies)) for name, own in _distinct(bodies)}
+        holes = {name: dict(_holes(model, each, bodies)) for name, each in _distinct(bodies)}
         gaps = [
-            abs(a - b) for own in holes.values() for a, b in itertools.combinations(own.values(), 2)
+            abs(a - b)
+            for each in holes.values()
+            for a, b in itertools.combinations(each.values(), 2)
         ]
         gaps += [
             _GEAR * mm * disc.radius for disc in model.skeleton.of(DiscFigure) if not disc.ring
         ]
         sizes = sizes_of(options, mm, longest, min(gaps, default=longest))
-        found = motion.found
-        values = {name: mm * own.value[found] for name, own in motion.sliders.items()}
-        now = {name: float(own[0]) for name, own in values.items()}
+        solved = motion.found
+        values = {name: mm * each.value[solved] for name, each in motion.sliders.items()}
+        now = {name: float(each[0]) for name, each in values.items()}
         ways = tuple(guideways(linkage, bodies, poses, now, sizes.width))
-        ends = {name: (float(own.min()), float(own.max())) for name, own in values.items()}
+        ends = {name: (float(each.min()), float(each.max())) for name, each in values.items()}
         travel = {way.name: ends[way.name] for way in ways}
         made = cls(linkage, mm, sizes, bodies, ways, travel, holes)
         turns = {link: phase(turn) for link, (_, turn) in poses.items()}
-        points = {point: complex(motion.place(point).v[found][0]) for point in linkage.points}
+        points = {point: complex(motion.place(point).v[solved][0]) for point in linkage.points}
         wheels, meshes = gear_meshes(linkage, model.skeleton, sizes, mm, turns, points)
         racks = list(rack_meshes(linkage, wheels, sizes, mm))
         single = [mesh.pinion for mesh in racks if mesh.pinion not in wheels]
@@ -122,11 +124,11 @@ class Construction:
         names = []
         for wheel in wheels:
             body = self.bodies[wheel.disc.link]
-            own = replace(wheel, phase=wheel.phase + turns[wheel.disc.link] - turns[body.name])
+            turned = replace(wheel, phase=wheel.phase + turns[wheel.disc.link] - turns[body.name])
             if wheel.disc.ring:
-                names.append(self._add(ring_plate(own, body, self.sizes)))
+                names.append(self._add(ring_plate(turned, body, self.sizes)))
             else:
-                names.append(self._add(self._wheel(gear_blank(own, body), body)))
+                names.append(self._add(self._wheel(gear_blank(turned, body), body)))
         for mesh in meshes:
             one, other = (wheels[k] for k in mesh.wheels)
             self.meshes.append(frozenset(names[k] for k in mesh.wheels))
@@ -191,23 +193,23 @@ class Construction:
         body, name = wheel.plate.body, wheel.plate.name
         self.plates.append(wheel.plate)
         self.more.setdefault(body, {}).update(wheel.fastened)
-        for own, place in wheel.fastened.items():
+        for point, place in wheel.fastened.items():
             plates = frozenset((name, body))
-            self.pins.append(Pin(name=own, body=body, place=place, plates=plates, fixed=True))
+            self.pins.append(Pin(name=point, body=body, place=place, plates=plates, fixed=True))
         return name
 
     def _main_plates(self) -> None:
         """The other plates of all bodies, the base plate first."""
         whole = {plate.name for plate in self.plates}
-        main = [self._main_plate(own) for own, _ in _distinct(self.bodies) if own not in whole]
+        main = [self._main_plate(name) for name, _ in _distinct(self.bodies) if name not in whole]
         self.plates = main + self.plates
 
     def _join(self) -> None:
         """The pins of all joints and guides."""
         with_hole: dict[tuple[str, str], set[str]] = {}
         for plate in self.plates:
-            for own in plate.openings:
-                with_hole.setdefault((plate.body, own.name), set()).add(plate.name)
+            for opening in plate.openings:
+                with_hole.setdefault((plate.body, opening.name), set()).add(plate.name)
         joined: dict[str, set[str]] = {}
         for point in self.linkage.points:
             bodies = {self.bodies[link].name for link in self.linkage.bodies_at(point)}
@@ -225,11 +227,11 @@ class Construction:
                 name = f"{way.name} {k}"
                 plates = frozenset(slotted | with_hole[way.runner, name])
                 self.pins.append(Pin(name=name, body=way.runner, place=place, plates=plates))
-        for point, found in joined.items():
-            if found:
+        for point, through_plates in joined.items():
+            if through_plates:
                 body = self.bodies[next(self.linkage.bodies_at(point))]
                 place = body.places[point]
-                through = frozenset(found)
+                through = frozenset(through_plates)
                 self.pins.append(Pin(name=point, body=body.name, place=place, plates=through))
 
     def _hole(self, body: str, point: str) -> str:
@@ -298,7 +300,7 @@ def check_webs(plate: Plate, sizes: Sizes) -> None:
     InputError
         With both openings and the distance.
     """
-    shapes = [_polygon(own.outline) for own in plate.openings]
+    shapes = [_polygon(opening.outline) for opening in plate.openings]
     for (a, one), (b, other) in itertools.combinations(enumerate(shapes), 2):
         web = shapely().distance(one, other)
         if web < sizes.web:

@@ -92,9 +92,9 @@ def in_rows(stack: PlateStack) -> list[PlacedPlate]:
     InputError
         If a plate is wider than the sheet.
     """
-    own = list(_lying(stack))
+    lying = list(_lying(stack))
     apart = stack.sizes.width / 2.0 + stack.sizes.kerf
-    sizes = [(high - low) for low, high in (box(item.curves[:1]) for item in own)]
+    sizes = [(high - low) for low, high in (box(item.curves[:1]) for item in lying)]
     area = sum((size.real + apart) * (size.imag + apart) for size in sizes)
     widest = max(size.real for size in sizes) + 2.0 * apart
     width = stack.sizes.sheet
@@ -104,7 +104,7 @@ def in_rows(stack: PlateStack) -> list[PlacedPlate]:
         raise InputError(
             f"a sheet of {width:g} mm is too narrow: the widest plate needs {widest:.4g} mm"
         )
-    order = sorted(range(len(own)), key=lambda k: (-sizes[k].imag, k))
+    order = sorted(range(len(lying)), key=lambda k: (-sizes[k].imag, k))
     places: dict[int, complex] = {}
     corner, row = complex(apart, apart), 0.0
     for k in order:
@@ -113,12 +113,12 @@ def in_rows(stack: PlateStack) -> list[PlacedPlate]:
         places[k] = corner
         corner += sizes[k].real + apart
         row = max(row, sizes[k].imag)
-    found = []
-    for k, item in enumerate(own):
+    placed = []
+    for k, item in enumerate(lying):
         shift = places[k] - box(item.curves[:1])[0]
         curves = tuple(curve.moved(shift, 1.0 + 0j) for curve in item.curves)
-        found.append(PlacedPlate(plate=item.plate, curves=curves, layer=item.layer, level=0.0))
-    return found
+        placed.append(PlacedPlate(plate=item.plate, curves=curves, layer=item.layer, level=0.0))
+    return placed
 
 
 def _lying(stack: PlateStack) -> Iterator[PlacedPlate]:
@@ -192,7 +192,7 @@ def _write(document: Any, space: Any, item: PlacedPlate, colour: int) -> None:
 
 
 _LINE = 0.1  # mm: the width of lines to cut
-_CUT, _SVG_ENGRAVE = "#ff0000", "#0000ff"  # colours that laser cutters tell apart
+_CUT, _SVG_ENGRAVE = "#ff0000", "#0000ff"  # colours that laser cutters distinguish
 _OPACITY = 0.55
 
 
@@ -324,15 +324,15 @@ def mesh_of(item: PlacedPlate, thickness: float) -> Mesh:
 
 def stl_of(meshes: Sequence[Mesh]) -> bytes:
     """All solids in one binary STL file, which does not separate solids that touch."""
-    found = [_HEADER, struct.pack("<I", sum(len(mesh.triangles) for mesh in meshes))]
+    parts = [_HEADER, struct.pack("<I", sum(len(mesh.triangles) for mesh in meshes))]
     for mesh in meshes:
         corners = mesh.corners[mesh.triangles]
         normal = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
         normal /= np.linalg.norm(normal, axis=1, keepdims=True)
         rows = np.zeros(len(corners), dtype=[("numbers", "<f4", 12), ("attributes", "<u2")])
         rows["numbers"] = np.concatenate([normal, corners.reshape(-1, 9)], axis=1)
-        found.append(rows.tobytes())
-    return b"".join(found)
+        parts.append(rows.tobytes())
+    return b"".join(parts)
 
 
 def separate_stl_of(named: Sequence[tuple[str, Mesh]]) -> bytes:
@@ -409,7 +409,7 @@ def step_of(name: str, placed: Sequence[PlacedPlate], thickness: float) -> bytes
         content = _TIME.sub(_STEP_FIRST_DAY, file.read_bytes(), count=1)
     # without the time and a counter of the process the same plates give the same bytes
     number = itertools.count(1)
-    return _OCCURRENCE.sub(lambda own: b"%s%d'" % (own[1], next(number)), content)
+    return _OCCURRENCE.sub(lambda match: b"%s%d'" % (match[1], next(number)), content)
 
 
 def _wire(cad: Any, curve: Outline) -> Any:
@@ -448,7 +448,7 @@ def check_plate_file(file: Path) -> str:
     Raises
     ------
     InputError
-        If there is no such format.
+        If the format does not exist.
     MissingPackageError
         If a package is not installed.
     """
@@ -473,7 +473,7 @@ def plates_of(stack: PlateStack, file: Path, *, layout: bool = False) -> bytes:
     Raises
     ------
     InputError
-        If there is no such format, or a plate is wider than the sheet.
+        If the format does not exist, or a plate is wider than the sheet.
     MissingPackageError
         If the package that writes the format is not installed.
     """
@@ -522,7 +522,7 @@ def write_plates(
     Returns
     -------
     PlateStack
-        The layers, the bill of materials, and what is proved of collisions.
+        The layers, the bill of materials, and the proof of no collisions.
 
     Raises
     ------

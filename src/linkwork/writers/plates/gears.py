@@ -131,8 +131,8 @@ def _check_mesh(
     """Refuse teeth that do not fall into the gaps of a closed train, and teeth that touch."""
     one, other = pair
     assert other.teeth is not None
-    wanted = mesh_phases([pair], lambda _: phases[one], points)[other]
-    pitches = (phases[other] - wanted) * other.teeth / math.tau
+    meshing = mesh_phases([pair], lambda _: phases[one], points)[other]
+    pitches = (phases[other] - meshing) * other.teeth / math.tau
     if abs(pitches - round(pitches)) > _IN_GAP:
         raise InputError(
             f'the teeth of "{mesh.name}" do not fall into the gaps: change the numbers of teeth '
@@ -165,11 +165,11 @@ def _with_teeth(
         least = min(counts)
         times = math.ceil(FEWEST / least)
         if sizes.module is not None:
-            wanted = 2.0 * millimetres * discs[counts.index(least)].radius / sizes.module
-            times = max(1, round(wanted / least))
+            teeth = 2.0 * millimetres * discs[counts.index(least)].radius / sizes.module
+            times = max(1, round(teeth / least))
         known = next((d for d in discs if d.teeth is not None), None)
         if known is not None and known.teeth is not None:
-            # a wheel with teeth gives its module to the others
+            # the module of a wheel with teeth applies to the other wheels
             times = round(Fraction(known.teeth, counts[discs.index(known)]))
         for disc, count in zip(discs, counts, strict=True):
             yield disc, replace(disc, teeth=times * count)
@@ -178,15 +178,15 @@ def _with_teeth(
 def _whole(discs: Sequence[DiscFigure]) -> list[int]:
     """The least whole numbers in the ratio of the radii."""
     ratios = [disc.radius / discs[0].radius for disc in discs]
-    found = [Fraction(ratio).limit_denominator(_LARGEST_RATIO) for ratio in ratios]
-    if any(abs(float(f) - r) > _WHOLE * r for f, r in zip(found, ratios, strict=True)):
+    fractions = [Fraction(ratio).limit_denominator(_LARGEST_RATIO) for ratio in ratios]
+    if any(abs(float(f) - r) > _WHOLE * r for f, r in zip(fractions, ratios, strict=True)):
         raise InputError(
             f'the radii of gears "{discs[0].name}" have no ratio of whole numbers: give their teeth'
         )
-    common = math.lcm(*(own.denominator for own in found))
-    whole = [int(own * common) for own in found]
+    common = math.lcm(*(number.denominator for number in fractions))
+    whole = [int(number * common) for number in fractions]
     divisor = math.gcd(*whole)
-    return [own // divisor for own in whole]
+    return [number // divisor for number in whole]
 
 
 def involute_outline(wheel: Wheel, center: complex) -> Outline:
@@ -232,8 +232,8 @@ def involute_outline(wheel: Wheel, center: complex) -> Outline:
 
 
 def _involute(angle: Array) -> Array:
-    found: Array = np.tan(angle) - angle
-    return found
+    involute: Array = np.tan(angle) - angle
+    return involute
 
 
 def touches(first: Wheel, second: Wheel, apart: float) -> bool:
@@ -242,7 +242,7 @@ def touches(first: Wheel, second: Wheel, apart: float) -> bool:
     Notes
     -----
     Both are rotated about fixed centres, in so small steps that no point moves more than the least
-    distance found; if that takes too many, they count as touching.
+    distance so far; if that takes too many, they count as touching.
     """
     if second.disc.ring:
         first, second = second, first

@@ -228,13 +228,13 @@ def _tree(places: Sequence[complex], slots: Collection[Ends]) -> list[Ends]:
     length = {pair: abs(places[pair[1]] - places[pair[0]]) for pair in pairs}
     longest = max(length.values())
     pairs.sort(key=lambda pair: (pair not in slots, round(length[pair] / longest, _EQUAL)))
-    group, found = list(range(len(places))), []
+    group, edges = list(range(len(places))), []
     for a, b in pairs:
         old, new = group[b], group[a]
         if old != new:
-            found.append((a, b))
-            group = [new if own == old else own for own in group]
-    return found
+            edges.append((a, b))
+            group = [new if label == old else label for label in group]
+    return edges
 
 
 def _around(places: Sequence[complex], arms: Sequence[Ends], out: float) -> Iterator[_Corner]:

@@ -74,10 +74,10 @@ class PlateOptions:
 
     def __post_init__(self) -> None:
         for field in fields(self):
-            given = getattr(self, field.name)
-            if field.name == "labels" or given is None:
+            value = getattr(self, field.name)
+            if field.name == "labels" or value is None:
                 continue
-            number = finite_number(field.name, given)
+            number = finite_number(field.name, value)
             may_vanish = field.name in ("clearance", "kerf", "gap", "backlash")
             if number < 0.0 or (number == 0.0 and not may_vanish):
                 what = "zero or more" if may_vanish else "positive"
@@ -146,24 +146,24 @@ def sizes_of(options: PlateOptions, millimetres: float, longest: float, nearest:
     InputError
         If a hole is wider than its bar, or the cut than a hole or an inner corner.
     """
-    own = {
+    stated = {
         field.name: None if getattr(options, field.name) is None
         else millimetres * getattr(options, field.name)
         for field in fields(options) if field.name != "labels"
     }  # fmt: skip
-    width = own["width"] or _preferred(min(_WIDTH * longest, nearest))
-    pin = own["pin"] or _preferred(_PIN * width)
+    width = stated["width"] or _preferred(min(_WIDTH * longest, nearest))
+    pin = stated["pin"] or _preferred(_PIN * width)
     sizes = Sizes(
         width=width,
-        fillet=own["fillet"] or width,
+        fillet=stated["fillet"] or width,
         pin=pin,
-        clearance=_CLEARANCE * pin if own["clearance"] is None else own["clearance"],
-        kerf=own["kerf"] or 0.0,
-        thickness=own["thickness"] or _preferred(_THICKNESS * width),
-        gap=_GAP * width if own["gap"] is None else own["gap"],
-        module=own["module"],
-        backlash=own["backlash"],
-        sheet=own["sheet"],
+        clearance=_CLEARANCE * pin if stated["clearance"] is None else stated["clearance"],
+        kerf=stated["kerf"] or 0.0,
+        thickness=stated["thickness"] or _preferred(_THICKNESS * width),
+        gap=_GAP * width if stated["gap"] is None else stated["gap"],
+        module=stated["module"],
+        backlash=stated["backlash"],
+        sheet=stated["sheet"],
         labels=options.labels,
     )
     if sizes.wall <= 0.0:
@@ -193,7 +193,7 @@ def _preferred(size: float) -> float:
 # Plates, pins and spacers of a stack of layers, and its bill of materials.
 
 
-#: The plates of the ground: below all others, and above them where they need it.
+#: The plates of the ground: below all other plates, and above them where necessary.
 BASE, BRIDGE = GROUND, f"{GROUND} bridge"
 #: Columns of a bill of materials, and their units.
 _UNITS = {
@@ -229,11 +229,11 @@ class Plate:
     @property
     def area(self) -> float:
         """Area of the material [mm²]."""
-        return self.outline.area - sum(own.outline.area for own in self.openings)
+        return self.outline.area - sum(opening.outline.area for opening in self.openings)
 
     def cut(self, kerf: float) -> tuple[Outline, ...]:
         """The outline and the openings along which a tool of a width moves [mm]."""
-        inner = (own.outline.grown(-kerf / 2.0) for own in self.openings)
+        inner = (opening.outline.grown(-kerf / 2.0) for opening in self.openings)
         return (self.outline.grown(kerf / 2.0), *inner)
 
 
@@ -319,8 +319,8 @@ class PlateStack:
 
     def span(self, pin: Pin) -> tuple[int, int]:
         """The lowest and the highest layer of a pin."""
-        own = [self.layer[name] for name in pin.plates]
-        return min(own), max(own)
+        layers = [self.layer[name] for name in pin.plates]
+        return min(layers), max(layers)
 
     def length(self, pin: Pin) -> float:
         """Length of a pin that ends flush with its outer plates [mm]."""
@@ -330,13 +330,13 @@ class PlateStack:
     @cached_property
     def spacers(self) -> tuple[Spacer, ...]:
         """Rings that fill the layers between the plates of a pin."""
-        found = []
+        spacers = []
         for pin in self.pins:
             taken = sorted({self.layer[name] for name in pin.plates})
             for low, high in itertools.pairwise(taken):
                 if high - low > 1:
-                    found.append(Spacer(pin=pin.name, above=low, layers=high - low - 1))
-        return tuple(found)
+                    spacers.append(Spacer(pin=pin.name, above=low, layers=high - low - 1))
+        return tuple(spacers)
 
     @property
     def verdict(self) -> str:
@@ -364,10 +364,10 @@ class PlateStack:
         for pin in self.pins:
             kind, ends = "fastener" if pin.fixed else "pin", self.span(pin)
             rows.append((kind, pin.name, *ends, self.length(pin), self.sizes.pin, nothing, nothing))
-        for own in self.spacers:
-            length = own.layers * self.sizes.thickness
-            ends = own.above + 1, own.above + own.layers
-            rows.append(("spacer", own.pin, *ends, length, self.sizes.spacer, nothing, 1.0))
+        for spacer in self.spacers:
+            length = spacer.layers * self.sizes.thickness
+            ends = spacer.above + 1, spacer.above + spacer.layers
+            rows.append(("spacer", spacer.pin, *ends, length, self.sizes.spacer, nothing, 1.0))
         columns = zip(*rows, strict=True)
         return Table(
             columns={name: np.array(cells) for name, cells in zip(_UNITS, columns, strict=True)},

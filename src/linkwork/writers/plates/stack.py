@@ -26,7 +26,7 @@ from linkwork.writers.plates.outlines import shapely
 from linkwork.writers.plates.plate import BASE, BRIDGE, Pin, Plate, PlateOptions, PlateStack
 
 _MOST = 200_000  # assignments tried for one number of layers
-_FEW = 2_000  # the same, to find what is in the way
+_FEW = 2_000  # the same, to find the conflicts
 
 #: Two plates by number; a pin (as -1 - its number) and a plate; or two pins.
 Conflict = tuple[int, int]
@@ -34,7 +34,7 @@ Conflict = tuple[int, int]
 
 @dataclass(frozen=True, kw_only=True)
 class LayerOrder:
-    """``layers`` by plate; ``None`` if there is no order, or, not ``complete``, none was found.
+    """``layers`` by plate; ``None`` if there is no order, or if an incomplete search gave none.
 
     ``tried``: the number of assignments that took.
     """
@@ -76,9 +76,9 @@ def find_layers(
     known, complete, tried = tuple(conflicts), True, 0
     for count in range(2, plates + 1):
         search = _Search(plates, pins, known, together, top, count, most)
-        found = search.place(0)
+        result = search.place(0)
         tried += most - search.left
-        if found:
+        if result:
             return LayerOrder(layers=tuple(search.layer), tried=tried)
         complete = complete and search.left > 0
     return LayerOrder(layers=None, complete=complete, tried=tried)
@@ -90,12 +90,12 @@ def obstacles(
     conflicts: Iterable[Conflict],
     together: Sequence[frozenset[int]] = (),
 ) -> list[Conflict]:
-    """Conflicts that allow no order together; in short searches none of them can be left out."""
+    """A minimal set of conflicts that allow no order together, as far as short searches show."""
     needed = list(conflicts)
     for conflict in tuple(needed):
-        fewer = [own for own in needed if own != conflict]
-        found = find_layers(plates, pins, fewer, together, _FEW)
-        if found.layers is None and found.complete:
+        fewer = [other for other in needed if other != conflict]
+        result = find_layers(plates, pins, fewer, together, _FEW)
+        if result.layers is None and result.complete:
             needed = fewer
     return needed
 
@@ -133,15 +133,15 @@ class _Search:
             else:
                 self.blocked[-1 - min(a, b)].add(max(a, b))
         self.on: list[list[int]] = [
-            [p for p, own in enumerate(self.pins) if k in own] for k in range(self.plates)
+            [p for p, held in enumerate(self.pins) if k in held] for k in range(self.plates)
         ]
         self.near: list[list[int]] = [
-            [p for p, own in enumerate(self.blocked) if k in own] for k in range(self.plates)
+            [p for p, held in enumerate(self.blocked) if k in held] for k in range(self.plates)
         ]
         # plates next to those placed already, the most constrained first
         self.order = []
         while len(placed) < self.plates:
-            joined = {k for own in self.pins if own & placed for k in own} - placed
+            joined = {k for held in self.pins if held & placed for k in held} - placed
             rest = joined or set(range(self.plates)) - placed
             chosen = max(rest, key=lambda k: (len(self.apart[k]) + len(self.near[k]), -k))
             self.order.append(chosen)
@@ -163,15 +163,15 @@ class _Search:
         return False
 
     def _fits(self, plate: int) -> bool:
-        own = self.layer[plate]
-        if any(self.layer[k] == own for k in self.apart[plate]):
+        layer = self.layer[plate]
+        if any(self.layer[k] == layer for k in self.apart[plate]):
             return False
         for group in self.together:
-            if plate in group and any(self.layer[k] not in (own, -1) for k in group):
+            if plate in group and any(self.layer[k] not in (layer, -1) for k in group):
                 return False
         for pin in self.near[plate]:
             low, high = self._span(pin)
-            if low < own < high:
+            if low < layer < high:
                 return False
         for pin in self.on[plate]:
             low, high = self._span(pin)
@@ -187,8 +187,8 @@ class _Search:
 
     def _span(self, pin: int) -> tuple[int, int]:
         """The layers between which a pin runs so far."""
-        own = [self.layer[k] for k in self.pins[pin] if self.layer[k] >= 0]
-        return (min(own), max(own)) if own else (0, 0)
+        layers = [self.layer[k] for k in self.pins[pin] if self.layer[k] >= 0]
+        return (min(layers), max(layers)) if layers else (0, 0)
 
 
 # ----------------------------------------------------------------------
@@ -263,10 +263,10 @@ class Collisions:
     @cached_property
     def _shapes(self) -> dict[int, tuple[str, tuple[ComplexArray, ...], float]]:
         """Body, core and radius of every part."""
-        own = {k: (x.body, x.core, x.radius) for k, x in enumerate(self.plates)}
+        shapes = {k: (x.body, x.core, x.radius) for k, x in enumerate(self.plates)}
         for p, pin in enumerate(self.pins):
-            own[-1 - p] = (pin.body, (np.array([pin.place]),), self.spacer)
-        return own
+            shapes[-1 - p] = (pin.body, (np.array([pin.place]),), self.spacer)
+        return shapes
 
     @cached_property
     def _reach(self) -> dict[int, float]:
@@ -304,8 +304,8 @@ class Collisions:
         center = origin + turn * plate.core[0][0]
         places = there[:, None] + by[:, None] * np.concatenate(core)
         away = np.abs(places - center[:, None]).max(axis=1)
-        found: Array = plate.inner - away - radius
-        return found
+        gap: Array = plate.inner - away - radius
+        return gap
 
     def conflicts(
         self,
@@ -314,13 +314,13 @@ class Collisions:
         progress: Callable[[float], None] | None = None,
     ) -> frozenset[Conflict]:
         """Pairs nearer than the gap in one of the positions."""
-        found, every = set(), list(self.pairs())
+        conflicts, every = set(), list(self.pairs())
         for k, (pair, distance) in enumerate(self.distances(every, poses), start=1):
             if distance.min() < gap:
-                found.add(pair)
+                conflicts.add(pair)
             if progress is not None:
                 progress(k / len(every))
-        return frozenset(found)
+        return frozenset(conflicts)
 
     def meeting(self, layers: Sequence[int]) -> list[Conflict]:
         """The pairs that share a layer."""
@@ -385,8 +385,8 @@ def prove_clear(
 
     Notes
     -----
-    Parts stay apart in a box if their distance in its middle exceeds what both can move. A box
-    in which they may not is divided, and those are that come of it.
+    Parts stay apart in a box if their distance in its middle exceeds the motion of both. Other
+    boxes are divided, and their halves likewise.
     """
     pairs, hit = collisions.meeting(layers), set[Conflict]()
 
@@ -405,7 +405,7 @@ def prove_clear(
 
 
 # ----------------------------------------------------------------------
-# A bridge: a second plate of the ground above all others, on columns, for some of its pins.
+# A bridge: a second plate of the ground on columns above all plates, for some of its pins.
 
 
 def columns_around(
@@ -438,7 +438,7 @@ def bridged(
 
     The bridge is the last plate; columns are the last pins.
     """
-    own = [
+    main_pins = [
         pin.name
         for pin in made.pins
         if BASE in pin.plates and pin.name in made.holes[GROUND] and not pin.fixed
@@ -449,8 +449,8 @@ def bridged(
         Pin(name=name, body=GROUND, place=place, plates=both, fixed=True)
         for name, place in columns.items()
     ]
-    for count in range(1, len(own) + 1):
-        for chosen in itertools.combinations(own, count):
+    for count in range(1, len(main_pins) + 1):
+        for chosen in itertools.combinations(main_pins, count):
             holes = {name: made.holes[GROUND][name] for name in chosen}
             below = {name: z for name, z in made.holes[GROUND].items() if name not in chosen}
             base = made.ground_plate(BASE, below | columns)
@@ -535,7 +535,7 @@ def stack_of(
 
 
 def _checked(model: Model, motion: Motion) -> Linkage:
-    """The linkage; refuse what plates are not known for."""
+    """The linkage; refuse mechanisms without plates."""
     linkage = model.description
     if not isinstance(linkage, Linkage):
         raise InputError(
@@ -579,21 +579,21 @@ def _layers(
     corners: tuple[complex, ...],
 ) -> tuple[Collisions, tuple[int, ...]]:
     """The parts, with a bridge only if they need one, and the layer of every plate."""
-    found, ordered = _order(collisions, conflicts), sorted(conflicts)
-    if found.layers is not None:
-        return collisions, found.layers
-    complete, left = found.complete, _MOST_WITH_BRIDGES
+    order, ordered = _order(collisions, conflicts), sorted(conflicts)
+    if order.layers is not None:
+        return collisions, order.layers
+    complete, left = order.complete, _MOST_WITH_BRIDGES
     for plates, pins in bridged(made, corners):
         if left <= 0:
             complete = False
             break
         with_bridge = Collisions(plates, pins, made.meshes, collisions.spacer)
-        found = _order(with_bridge, conflicts, top=len(plates) - 1)
-        if found.layers is not None:
+        order = _order(with_bridge, conflicts, top=len(plates) - 1)
+        if order.layers is not None:
             for plate in (plates[0], plates[-1]):
                 check_webs(plate, made.sizes)
-            return with_bridge, found.layers
-        complete, left = complete and found.complete, left - found.tried
+            return with_bridge, order.layers
+        complete, left = complete and order.complete, left - order.tried
     if not complete:
         raise InputError(
             f"no order of layers was found for {len(made.plates)} plates: the search was given "

@@ -1,4 +1,4 @@
-"""Plates of gears and cams: wheels with holes, rings, and what fastens them to another plate."""
+"""Plates of gears and cams: wheels with holes, rings, and their fastening to another plate."""
 
 from __future__ import annotations
 
@@ -131,7 +131,7 @@ def ring_plate(wheel: Wheel, body: RigidBody, sizes: Sizes) -> WheelPlate:
     turns = wheel.phase + math.tau * (np.arange(_FASTENERS) + 0.5) / _FASTENERS
     places = (blank.center + rim * np.exp(1j * turns)).tolist()
     fastened = {f"{name} {k}": place for k, place in enumerate(places, start=1)}
-    holes = (Opening(name=own, outline=circle(z, sizes.hole / 2.0)) for own, z in fastened.items())
+    holes = (Opening(name=pin, outline=circle(z, sizes.hole / 2.0)) for pin, z in fastened.items())
     outer = rim + sizes.width / 2.0
     plate = Plate(
         name=name,
@@ -175,23 +175,23 @@ def rack_meshes(
     """
     known = {wheel.disc.key: wheel for wheel in wheels}
     for part in linkage.parts:
-        found = part.pairs(linkage)
-        if not isinstance(part, ToothedPart) or found is None:
+        pairs = part.pairs(linkage)
+        if not isinstance(part, ToothedPart) or pairs is None:
             continue
-        for coupling in found.couplings:
+        for coupling in pairs.couplings:
             if coupling.slide is None:
                 continue
             disc = next(f for f in part.figures(linkage, {}) if isinstance(f, DiscFigure))
             size = 2.0 * millimetres * disc.radius
             teeth = FEWEST if sizes.module is None else max(1, round(size / sizes.module))
-            own = Wheel(
+            blank = Wheel(
                 disc=replace(disc, teeth=teeth),
                 module=size / teeth,
                 phase=0.0,
                 pressure=part.pressure(linkage),
                 backlash=sizes.backlash_of(size / teeth),
             )
-            pinion = known.get(disc.key, own)
+            pinion = known.get(disc.key, blank)
             if _touch(pinion):
                 raise InputError(
                     f'the teeth of "{part.name}" touch where they should not, with '
@@ -250,9 +250,9 @@ def rack_plate(
 
     def placed(z: ComplexArray) -> ComplexArray:
         mirrored = z.real + 1j * (line + side * z.imag)
-        found: ComplexArray = middle + along * mirrored
+        points: ComplexArray = middle + along * mirrored
         # clockwise teeth become counter-clockwise
-        return found[::-1] if side > 0.0 else found
+        return points[::-1] if side > 0.0 else points
 
     holes = placed(np.array(places)).tolist()
     fastened = {f"{name} {k}": z for k, z in enumerate(holes, start=1)}
@@ -262,7 +262,7 @@ def rack_plate(
         body=way.runner,
         outline=Outline(corners=corners, bulges=np.zeros(len(corners))),
         openings=tuple(
-            Opening(name=own, outline=circle(z, sizes.hole / 2.0)) for own, z in fastened.items()
+            Opening(name=pin, outline=circle(z, sizes.hole / 2.0)) for pin, z in fastened.items()
         ),
         core=(placed(core),),
         radius=0.0,

@@ -135,10 +135,10 @@ class Document:
                 return replace(block, pairs=tuple(pairs))
             if not isinstance(block, Equation | Table | Figure):
                 return block
-            own = counts[type(block)] = counts.get(type(block), 0) + 1
+            count = counts[type(block)] = counts.get(type(block), 0) + 1
             if isinstance(block, Equation):
-                return replace(block, number=own)
-            return replace(block, number=own, caption=_sentence(block.caption))
+                return replace(block, number=count)
+            return replace(block, number=count, caption=_sentence(block.caption))
 
         listed = tuple(
             replace(section, blocks=tuple(map(number, section.blocks))) for section in sections
@@ -181,8 +181,8 @@ def _width(text: str) -> int:
 
 def shown_name(name: str) -> str:
     """A quantity with Greek letters: ``μ.velocity``."""
-    own, point, rate = name.partition(".")
-    return f"{pretty(own)}{point}{rate}"
+    base, point, rate = name.partition(".")
+    return f"{pretty(base)}{point}{rate}"
 
 
 def _with_units(column: Column) -> Column:
@@ -293,16 +293,16 @@ _SPACE = '<mspace width="0.17em"/>'
 
 def mathml_terms(mathml: str) -> list[str]:
     """The terms of a ``<math>`` element, each as an element that begins with its sign."""
-    found: list[str] = []
+    terms: list[str] = []
     for parts in _terms(mathml):
         lead = parts[0]
-        if lead.tag == "mo" and len(found):
+        if lead.tag == "mo" and len(terms):
             lead.set("form", "infix")
         inside = "".join(Tree.tostring(part, encoding="unicode") for part in parts)
         for silent in _SILENT:  # browsers leave no room for them
             inside = inside.replace(f"<mo>{silent}</mo>", _SPACE)
-        found.append(f"<math>{inside}</math>")
-    return found
+        terms.append(f"<math>{inside}</math>")
+    return terms
 
 
 def office_terms(mathml: str) -> list[str]:
@@ -310,14 +310,14 @@ def office_terms(mathml: str) -> list[str]:
 
     No term begins with an equals sign, which LibreOffice shows as an error.
     """
-    found: list[str] = []
+    terms: list[str] = []
     for parts in _terms(mathml):
         shown = "".join(map(_office, parts))
-        if found and parts[0].tag == "mo" and parts[0].text == "=":
-            found[-1] += shown
+        if terms and parts[0].tag == "mo" and parts[0].text == "=":
+            terms[-1] += shown
         else:
-            found.append(shown)
-    return found
+            terms.append(shown)
+    return terms
 
 
 def typst_terms(mathml: str) -> list[str]:

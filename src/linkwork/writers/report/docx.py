@@ -192,12 +192,12 @@ class _Writer:
         """Lines above and below the head and below the table; the head is repeated on each page."""
         border = '<w:{side} w:val="single" w:sz="{size}" w:color="333333"/>'
         sides = [border.format(side=side, size=8) for side in ("top", "bottom")]
-        own = f'<w:tblBorders xmlns:w="{_WORD}">{"".join(sides)}</w:tblBorders>'
-        grid._tbl.tblPr.append(self.parse(own))
+        borders = f'<w:tblBorders xmlns:w="{_WORD}">{"".join(sides)}</w:tblBorders>'
+        grid._tbl.tblPr.append(self.parse(borders))
         for cell in grid.rows[0].cells:
             below = border.format(side="bottom", size=4)
-            own = f'<w:tcBorders xmlns:w="{_WORD}">{below}</w:tcBorders>'
-            cell._tc.get_or_add_tcPr().append(self.parse(own))
+            borders = f'<w:tcBorders xmlns:w="{_WORD}">{below}</w:tcBorders>'
+            cell._tc.get_or_add_tcPr().append(self.parse(borders))
         head = grid.rows[0]._tr.get_or_add_trPr()
         head.append(self.parse(f'<w:tblHeader xmlns:w="{_WORD}"/>'))
 

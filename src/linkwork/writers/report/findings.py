@@ -1,4 +1,4 @@
-"""Templates of reports: which sections, in which order, and what they show."""
+"""Templates of reports: sections, their order, and their contents."""
 
 from __future__ import annotations
 
@@ -54,7 +54,7 @@ _BYLINE = ("author", "institution", "date")
 _NAMES = ListOf(Text(), "quantity")
 _KEYS = Form(
     "template",
-    "The sections of a report and what they show",
+    "The sections of a report and their contents",
     "",
     (
         Key("format", Constant(FORMAT), "The version of this file format; write format = 1"),
@@ -94,7 +94,7 @@ class Template:
 
     @property
     def byline(self) -> tuple[tuple[str, str], ...]:
-        """Author, institution and date, as far as they are given."""
+        """The stated ones of author, institution and date."""
         return tuple((name, text) for name in _BYLINE if (text := getattr(self, name)))
 
     def with_head(self, head: Mapping[str, str | None]) -> Template:
@@ -105,11 +105,11 @@ class Template:
         InputError
             If one of them is not text.
         """
-        given: dict[str, Any] = {name: text for name, text in head.items() if text is not None}
-        for name, text in given.items():
+        texts: dict[str, Any] = {name: text for name, text in head.items() if text is not None}
+        for name, text in texts.items():
             if not isinstance(text, str):
                 raise InputError(f"the {name} of a report must be text, got {as_told(text)}")
-        return replace(self, **given)
+        return replace(self, **texts)
 
 
 def template_of(name: str | Path) -> Template:
@@ -118,7 +118,7 @@ def template_of(name: str | Path) -> Template:
     Raises
     ------
     MechanismFileError
-        If there is no such file, or with every problem found in it: line, key and remedy.
+        If the file does not exist; else all its problems with line, key and remedy.
     """
     shown = str(as_path(name))
     if shown in TEMPLATES:

@@ -23,13 +23,13 @@ if TYPE_CHECKING:
 
 T = TypeVar("T")
 
-_SWEPT, _FOLLOWED, _FOUND = 0.3, 0.6, 0.7  # finished fractions: sweep, circuits, the others
+_SWEPT, _FOLLOWED, _DONE = 0.3, 0.6, 0.7  # finished fractions: sweep, circuits, the others
 _MOST_TOLERANCES = 6  # quantities, if the template names none
 _NO_POINTS = "the mechanism has no points to draw"
 _NO_INPUT = "the mechanism has no input"
-_NOT_FOUND = "no position was found"
+_NOT_DONE = "no position was found"
 _HIDDEN = "a question of the file hides it: report a copy of the file without [[questions]]"
-#: The sections that would show what a question hides.
+#: The sections that would show the answer of a question.
 _HIDING = {
     "numbers": ("vectors", "newton", "motion", "configurations", "forces", "tolerances"),
     "charts": ("plots",),
@@ -52,7 +52,7 @@ def write_report(
     date: str | None = None,
     progress: Callable[[float], None] | None = None,
 ) -> tuple[Path, ...]:
-    """Write a report: equations, drawings, tables, plots, what is proved, the file.
+    """Write a report: equations, drawings, tables, plots, proofs, the file.
 
     Parameters
     ----------
@@ -100,8 +100,8 @@ def write_report(
     )
     check_template(chosen, mechanism.model)
     tell = progress or (lambda fraction: None)
-    found = findings(mechanism, chosen, at, configuration, lambda part: tell(_FOUND * part))
-    written = report_of(found, chosen, target, lambda part: tell(_FOUND + (1.0 - _FOUND) * part))
+    results = findings(mechanism, chosen, at, configuration, lambda part: tell(_DONE * part))
+    written = report_of(results, chosen, target, lambda part: tell(_DONE + (1.0 - _DONE) * part))
     return written.save(target)
 
 
@@ -139,14 +139,14 @@ class _Gathering:
         self.absent: dict[str, str] = {}
 
     def gather(self) -> None:
-        """Compute the position and the motion, then what they allow."""
+        """Compute the position and the motion, then the results that need them."""
         mechanism = self.mechanism
         self.found["check"] = mechanism.check()
         swept = None
         if mechanism.description.inputs:
             swept = mechanism.sweep(
                 configuration=self.configuration,
-                progress=lambda part: self.progress(_SWEPT * part / _FOUND),
+                progress=lambda part: self.progress(_SWEPT * part / _DONE),
             )
         position = self._position(swept)
         self.found |= {"position": position, "motion": swept}
@@ -156,7 +156,7 @@ class _Gathering:
         self._vary(position)
         self.progress(1.0)
 
-    def _wanted(self, section: str) -> bool:
+    def _is_included(self, section: str) -> bool:
         return section in self.template.sections and section not in self.absent
 
     def _without(self, sections: Collection[str], reason: str) -> None:
@@ -183,7 +183,7 @@ class _Gathering:
             self._without([*hidden, "file"], _HIDDEN)
         drawn = bool(self.mechanism.model.compiled.points.names)
         if not position.status.ok:
-            self._without(("drawing", "vectors", "tolerances"), _NOT_FOUND)
+            self._without(("drawing", "vectors", "tolerances"), _NOT_DONE)
         if not drawn:
             self._without(("drawing", "paths"), _NO_POINTS)
         if not (self.template.tolerances_of or position.outputs or position.unknowns):
@@ -197,7 +197,7 @@ class _Gathering:
         if swept is None:
             self._without(("plots", "paths", "circuits", "forces"), _NO_INPUT)
         elif not swept.found.any():
-            self._without(("plots", "paths", "forces", "tolerances"), _NOT_FOUND)
+            self._without(("plots", "paths", "forces", "tolerances"), _NOT_DONE)
         else:
             if not quantities_of(swept, self.template):
                 self._without(("plots",), "the mechanism has no unknown, output or traced point")
@@ -206,23 +206,23 @@ class _Gathering:
 
     def _list(self, position: Position) -> None:
         """Circuits, configurations, vectors."""
-        if self._wanted("vectors"):
+        if self._is_included("vectors"):
             self.found["vectors"] = motion.vector_loops(self.mechanism.model, position)
-        if self._wanted("circuits"):
-            span = (_FOLLOWED - _SWEPT) / _FOUND
+        if self._is_included("circuits"):
+            span = (_FOLLOWED - _SWEPT) / _DONE
             self._try(
                 "circuits",
                 lambda: self.mechanism.circuits(
-                    progress=lambda part: self.progress(_SWEPT / _FOUND + span * part)
+                    progress=lambda part: self.progress(_SWEPT / _DONE + span * part)
                 ),
             )
-        if self._wanted("configurations"):
-            asked = position.input or None
-            self._try("configurations", lambda: self.mechanism.configurations(asked))
+        if self._is_included("configurations"):
+            inputs = position.input or None
+            self._try("configurations", lambda: self.mechanism.configurations(inputs))
 
     def _load(self, swept: Motion | None) -> None:
         """The forces in the rows of the motion, and where friction stops it."""
-        if swept is None or not self._wanted("forces"):
+        if swept is None or not self._is_included("forces"):
             return
         mechanism = self.mechanism
         self._try("forces", lambda: mechanism.forces(motion=swept))
@@ -232,7 +232,7 @@ class _Gathering:
 
     def _vary(self, position: Position) -> None:
         """The tolerances at the drawn position."""
-        if not self._wanted("tolerances"):
+        if not self._is_included("tolerances"):
             return
         usual = position.outputs or position.unknowns
         names = self.template.tolerances_of or tuple(usual)[:_MOST_TOLERANCES]

@@ -170,36 +170,36 @@ def markdown_files(
         f"{folder}/figure-{figure.number}.png": figure.content
         for figure in figure_files(document, "png", progress)
     }
-    lines = [f"# {_plain(document.title)}", ""]
+    lines = [f"# {_text(document.title)}", ""]
     if document.byline:
-        lines += [" · ".join(_plain(text) for _, text in document.byline), ""]
+        lines += [" · ".join(_text(text) for _, text in document.byline), ""]
     for number, section in enumerate(document.sections, 1):
-        lines += [f"## {number} {_plain(section.title)}", ""]
+        lines += [f"## {number} {_text(section.title)}", ""]
         for block in section.blocks:
-            lines += [*_markdown_writer_block(block, folder), ""]
+            lines += [*_text_writer_block(block, folder), ""]
     return ("\n".join(lines).rstrip() + "\n").encode(), pictures
 
 
-def _markdown_writer_block(block: Block, folder: str) -> Iterator[str]:
+def _text_writer_block(block: Block, folder: str) -> Iterator[str]:
     match block:
         case Paragraph():
-            yield _plain(block.text)
+            yield _text(block.text)
         case Note():
-            yield f"**{_plain(block.text)}**"
+            yield f"**{_text(block.text)}**"
         case Facts():
             for label, text in block.pairs:
-                yield f"- {_plain(label)}: {_plain(text)}" if label else f"  - {_plain(text)}"
+                yield (f"- {_text(label)}: {_text(text)}" if label else f"  - {_text(text)}")
         case Equation():
             yield f"$$ {block.latex} \\tag{{{block.number}}} $$"
         case Table():
-            yield f"Table {block.number}. {_plain(block.caption)}"
+            yield f"Table {block.number}. {_text(block.caption)}"
             yield ""
-            yield _row([_plain(column.header) for column in block.columns])
+            yield _row([_text(column.header) for column in block.columns])
             yield _row(["---" if c.align == "left" else "---:" for c in block.columns])
             for cells in zip(*map(printed, block.columns), strict=True):
-                yield _row(list(map(_plain, cells)))
+                yield _row(list(map(_text, cells)))
         case Figure():
-            caption = f"Figure {block.number}. {_plain(block.caption)}"
+            caption = f"Figure {block.number}. {_text(block.caption)}"
             yield f"![{caption}]({quote(folder)}/figure-{block.number}.png)"
             yield ""
             yield caption
@@ -214,6 +214,6 @@ def _row(cells: list[str]) -> str:
     return f"| {' | '.join(cells)} |"
 
 
-def _plain(text: str) -> str:
+def _text(text: str) -> str:
     """Text without signs of the markup."""
     return _MARKUP.sub(r"\\\1", text.replace("\n", " "))

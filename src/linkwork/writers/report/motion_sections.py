@@ -57,10 +57,10 @@ _WHOLE = 1e-9  # of a step: rounding of an input value
 _PANELS = 4  # panels of a figure
 
 
-def quantities_of(found: Motion, template: Template) -> list[str]:
+def quantities_of(motion: Motion, template: Template) -> list[str]:
     """The quantities of tables and plots."""
-    traced = (f"{point}.{axis}" for point in found.skeleton.traced for axis in "xy")
-    usual = [*found.unknowns, *found.riding, *found.outputs, *traced]
+    traced = (f"{point}.{axis}" for point in motion.skeleton.traced for axis in "xy")
+    usual = [*motion.unknowns, *motion.riding, *motion.outputs, *traced]
     return list(dict.fromkeys(template.quantities or usual))
 
 
@@ -83,12 +83,12 @@ def check_template(template: Template, model: Model) -> None:
         _spaced(model.rows_in_file_units[:, 0], template.every, model.input_units)
 
 
-def motion(found: Findings, template: Template) -> Iterator[Block]:
+def motion(findings: Findings, template: Template) -> Iterator[Block]:
     """Counts and limits, the table of chosen rows with rates, ranges."""
-    if found.motion is None:
-        yield from _position(found)
+    if findings.motion is None:
+        yield from _position(findings)
         return
-    swept = found.motion
+    swept = findings.motion
     head = f"{range_text(swept)}: {how_many(swept)}"
     yield Facts(pairs=(("rows", head), *status_fields(swept), *limit_fields(swept)))
     if not swept.found.any():
@@ -130,9 +130,9 @@ def _shortened(inputs: Column) -> Column:
     return replace(inputs, cells=cells)
 
 
-def _position(found: Findings) -> Iterator[Block]:
+def _position(findings: Findings) -> Iterator[Block]:
     """The only position of a mechanism without input."""
-    position = found.position
+    position = findings.position
     yield Paragraph(text="The mechanism has no input: it has the position below.")
     if not position.status.ok:
         return
@@ -158,19 +158,19 @@ def _position(found: Findings) -> Iterator[Block]:
 
 def _chosen(swept: Motion, every: float | None) -> CountArray:
     """Rows of the table of the input, evenly spaced, and those at limits."""
-    asked = np.flatnonzero(swept.asked)
-    values = next(iter(swept.inputs.values()))[asked]
+    requested = np.flatnonzero(swept.asked)
+    values = next(iter(swept.inputs.values()))[requested]
     if every is None:
-        last = len(asked) - 1
+        last = len(requested) - 1
         divisors = (s for s in range(1, last + 1) if not last % s and last // s <= _ROWS)
         stride = next(divisors, 1)
         if last // stride < _ROWS // 2:  # a number of rows with few divisors
             stride = max(math.ceil(last / _ROWS), 1)
-        rows = asked[[*range(0, len(asked), stride)]]
+        rows = requested[[*range(0, len(requested), stride)]]
     else:
-        rows = asked[_spaced(values, every, swept.input_units)]
+        rows = requested[_spaced(values, every, swept.input_units)]
     limits = np.flatnonzero([bool(limit) for limit in swept.limit] & swept.found)
-    return np.union1d(np.union1d(rows, asked[-1:]), limits)
+    return np.union1d(np.union1d(rows, requested[-1:]), limits)
 
 
 def _spaced(values: Array, every: float, units: Mapping[str, str]) -> CountArray:
@@ -220,15 +220,15 @@ def _rates(swept: Motion, names: Sequence[str]) -> Iterator[tuple[str, list[Aske
 
 
 def _columns(swept: Motion, listed: Sequence[Asked], rows: CountArray) -> Iterator[Column]:
-    values = [np.asarray(swept[asked.name], dtype=float) for asked in listed]
+    values = [np.asarray(swept[quantity.name], dtype=float) for quantity in listed]
     sizes: dict[str, float] = {}
-    for asked, column in zip(listed, values, strict=True):
+    for quantity, column in zip(listed, values, strict=True):
         most = float(np.nanmax(np.abs(column[np.isfinite(column)]), initial=0.0))
-        sizes[asked.unit] = max(sizes.get(asked.unit, 0.0), most)
-    for asked, column in zip(listed, values, strict=True):
-        unit = f" [{asked.unit}]" if asked.unit else ""
-        cells = number_cells(column[rows], asked.unit, sizes[asked.unit])
-        yield Column(header=f"{shown_name(asked.own.name)}{unit}", cells=cells, align="point")
+        sizes[quantity.unit] = max(sizes.get(quantity.unit, 0.0), most)
+    for quantity, column in zip(listed, values, strict=True):
+        unit = f" [{quantity.unit}]" if quantity.unit else ""
+        cells = number_cells(column[rows], quantity.unit, sizes[quantity.unit])
+        yield Column(header=f"{shown_name(quantity.own.name)}{unit}", cells=cells, align="point")
 
 
 def number_cells(values: Array, unit: str, size: float) -> list[str]:
@@ -259,14 +259,14 @@ def _notes(swept: Motion, rows: CountArray) -> Iterator[Column]:
         yield Column(header="note", cells=cells)
 
 
-def plots(found: Findings, template: Template) -> Iterator[Block]:
+def plots(findings: Findings, template: Template) -> Iterator[Block]:
     """The quantities and their rates over the input."""
-    assert found.motion is not None
-    names = quantities_of(found.motion, template)
-    over = next(iter(found.motion.inputs))
-    for caption, listed in _groups(found.motion, names):
+    assert findings.motion is not None
+    names = quantities_of(findings.motion, template)
+    over = next(iter(findings.motion.inputs))
+    for caption, listed in _groups(findings.motion, names):
         about = "Displacements" if caption == "Motion" else caption
-        chart = motion_plot(found.motion, [asked.name for asked in listed])
+        chart = motion_plot(findings.motion, [quantity.name for quantity in listed])
         yield from figures_of(chart, f"{about} over {pretty(over)}.")
 
 
@@ -285,11 +285,11 @@ def figures_of(chart: Chart, caption: str) -> Iterator[Figure]:
         yield Figure(caption=caption if not k else f"{caption[:-1]} (continued).", picture=part)
 
 
-def paths(found: Findings, template: Template) -> Iterator[Block]:
+def paths(findings: Findings, template: Template) -> Iterator[Block]:
     """The paths of the traced points."""
-    assert found.motion is not None
-    traced = found.motion.skeleton.traced
-    chart = motion_plot(found.motion, traced, kind="path")
+    assert findings.motion is not None
+    traced = findings.motion.skeleton.traced
+    chart = motion_plot(findings.motion, traced, kind="path")
     what = "Path of point" if len(traced) == 1 else "Paths of points"
     yield Figure(
         caption=f"{what} {', '.join(map(pretty, traced))}.",
@@ -297,9 +297,9 @@ def paths(found: Findings, template: Template) -> Iterator[Block]:
     )
 
 
-def circuits(found: Findings, template: Template) -> Iterator[Block]:
+def circuits(findings: Findings, template: Template) -> Iterator[Block]:
     """Every circuit with its branches, ranges, dead points; a chart of all."""
-    listed = found.circuits
+    listed = findings.circuits
     assert listed is not None
     yield Paragraph(
         text="A circuit is the set of all positions that the mechanism can reach without "
@@ -315,18 +315,18 @@ def circuits(found: Findings, template: Template) -> Iterator[Block]:
         yield from figures_of(chart, f"All circuits over {pretty(listed.input)}.")
 
 
-def configurations(found: Findings, template: Template) -> Iterator[Block]:
+def configurations(findings: Findings, template: Template) -> Iterator[Block]:
     """All assembly configurations at the input of the drawn position."""
-    listed = found.configurations
+    listed = findings.configurations
     assert listed is not None
-    kinds = {v.name: Kind(v.kind) for v in found.model.equations.unknowns}
+    kinds = {v.name: Kind(v.kind) for v in findings.model.equations.unknowns}
     where = inputs_text(listed.input, listed.input_units)
     if len(listed):
         yield from tables(
             f"Configurations {where}".rstrip(), configuration_columns(listed, kinds, _SHORT)
         )
     yield Facts(pairs=tuple(completeness_fields(listed)))
-    if len(listed) and found.model.compiled.points.names:
+    if len(listed) and findings.model.compiled.points.names:
         sheet = replace(configuration_sheet(listed), title="", caption="")
         yield Figure(caption=f"The configurations {where}".rstrip() + ".", picture=sheet)
 
@@ -335,33 +335,33 @@ def configurations(found: Findings, template: Template) -> Iterator[Block]:
 # Sections about forces and tolerances.
 
 
-def forces(found: Findings, template: Template) -> Iterator[Block]:
+def forces(findings: Findings, template: Template) -> Iterator[Block]:
     """Efforts of the inputs and reactions of the joints."""
-    acting = found.forces
+    acting = findings.forces
     assert acting is not None
-    assert found.motion is not None
-    rest = "at rest" if found.motion.speed is None else "with the inertia of its masses"
+    assert findings.motion is not None
+    rest = "at rest" if findings.motion.speed is None else "with the inertia of its masses"
     yield Paragraph(text=f"Forces of the mechanism {rest}, over the rows of its motion.")
     yield Facts(pairs=tuple(force_status_fields(acting)))
     listed = finite_forces(acting)
     if listed:
-        yield from tables("Smallest and largest forces", ranges_of(found.motion, listed))
-    yield Facts(pairs=tuple(force_fields(acting, found.stalls)))
+        yield from tables("Smallest and largest forces", ranges_of(findings.motion, listed))
+    yield Facts(pairs=tuple(force_fields(acting, findings.stalls)))
     efforts = [name for name in acting.efforts if name in listed]
     if efforts:
-        chart = motion_plot(found.motion, efforts)
-        over = pretty(next(iter(found.motion.inputs)))
+        chart = motion_plot(findings.motion, efforts)
+        over = pretty(next(iter(findings.motion.inputs)))
         what = "Effort" if len(efforts) == 1 else "Efforts"
         yield from figures_of(chart, f"{what} of the input over {over}.")
 
 
-def tolerances(found: Findings, template: Template) -> Iterator[Block]:
+def tolerances(findings: Findings, template: Template) -> Iterator[Block]:
     """How tolerances and clearances affect every requested quantity."""
     yield Paragraph(
         text="Worst case, root sum square and shares are of first order in the deviations and "
         "clearances of the file."
     )
-    for each in found.tolerances:
+    for each in findings.tolerances:
         where = f" at {each.where}" if each.where else ""
         if each.status is not SensitivityStatus.FOUND:
             yield Facts(pairs=((each.of, each.status.value),))

@@ -106,22 +106,22 @@ def check_report_file(path: Path) -> None:
         _PACKAGES[suffix]()
 
 
-def document_of(found: Findings, template: Template) -> Document:
+def document_of(findings: Findings, template: Template) -> Document:
     """The sections of a template with their content; the last one names those left out."""
     sections = []
     for name in template.sections:
-        if name not in found.absent:
+        if name not in findings.absent:
             title, build = _SECTIONS[name]
-            sections.append(Section(title=title, blocks=tuple(build(found, template))))
-    if found.absent:
-        absent = tuple((_SECTIONS[name][0], why) for name, why in found.absent.items())
+            sections.append(Section(title=title, blocks=tuple(build(findings, template))))
+    if findings.absent:
+        absent = tuple((_SECTIONS[name][0], why) for name, why in findings.absent.items())
         sections.append(Section(title="Sections left out", blocks=(Facts(pairs=absent),)))
-    title = template.title or found.model.description.name
+    title = template.title or findings.model.description.name
     return Document.numbered(title, template.byline, sections)
 
 
 def report_of(
-    found: Findings,
+    findings: Findings,
     template: Template,
     path: Path,
     progress: Callable[[float], None] = lambda fraction: None,
@@ -131,12 +131,12 @@ def report_of(
     Raises
     ------
     InputError
-        If there is no such format, or a key of the template does not fit the motion.
+        If the format does not exist, or a key of the template does not fit the motion.
     MissingPackageError
         If the package that writes the format is not installed.
     """
     check_report_file(path)
-    document = document_of(found, template)
+    document = document_of(findings, template)
     pictures: dict[str, bytes] = {}
     match path.suffix.lower():
         case ".html":

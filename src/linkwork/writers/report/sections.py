@@ -66,43 +66,42 @@ def tables(caption: str, columns: list[Column]) -> Iterator[Table]:
         yield Table(caption=caption if not k else f"{caption} (continued)", columns=part)
 
 
-def summary(found: Findings, template: Template) -> Iterator[Block]:
+def summary(findings: Findings, template: Template) -> Iterator[Block]:
     """What the mechanism is, and how the file was read."""
-    description = found.model.description
-    given = {"purpose": description.purpose, "source": description.source}
+    description = findings.model.description
+    texts = {"purpose": description.purpose, "source": description.source}
     units = f"lengths in {description.length}, angles in {description.angle.value}"
-    pairs = [(label, text) for label, text in given.items() if text]
-    pairs += [*check_fields(found.check), ("units", units)]
-    if not found.position.status.ok and found.position.failure is not None:
-        pairs += found.position.failure.sentences()
-    yield Facts(pairs=tuple(pairs), quoted=frozenset(given))
+    pairs = [(label, text) for label, text in texts.items() if text]
+    pairs += [*check_fields(findings.check), ("units", units)]
+    if not findings.position.status.ok and findings.position.failure is not None:
+        pairs += findings.position.failure.sentences()
+    yield Facts(pairs=tuple(pairs), quoted=frozenset(texts))
 
 
-def drawing(found: Findings, template: Template) -> Iterator[Block]:
+def drawing(findings: Findings, template: Template) -> Iterator[Block]:
     """The position with its dimensions, and the paths of traced points."""
     options = SceneOptions(dimensions=True, title="")
-    scene = scene_of(found.position, found.motion, options=options)
-    hidden = any("input" in question.hide for question in found.model.description.questions)
-    where = "" if hidden else inputs_text(found.position.input, found.position.input_units)
-    traced_points = found.motion is not None and found.motion.skeleton.traced
+    scene = scene_of(findings.position, findings.motion, options=options)
+    description = findings.model.description
+    hidden = any("input" in question.hide for question in description.questions)
+    where = "" if hidden else inputs_text(findings.position.input, findings.position.input_units)
+    traced_points = findings.motion is not None and findings.motion.skeleton.traced
     paths = ", with the paths of traced points" if traced_points else ""
-    caption = (
-        f"The mechanism {where}".rstrip() + f"{paths}. Lengths in {found.model.description.length}."
-    )
+    caption = f"The mechanism {where}".rstrip() + f"{paths}. Lengths in {description.length}."
     yield Figure(caption=caption, picture=scene)
 
 
-def vectors(found: Findings, template: Template) -> Iterator[Block]:
+def vectors(findings: Findings, template: Template) -> Iterator[Block]:
     """The loop equations as vectors: a diagram and their sizes and directions."""
-    where = inputs_text(found.position.input, found.position.input_units)
-    options = SceneOptions(vectors=found.vectors, title="", arrows=False)
-    scene = scene_of(found.position, None, options=options)
+    where = inputs_text(findings.position.input, findings.position.input_units)
+    options = SceneOptions(vectors=findings.vectors, title="", arrows=False)
+    scene = scene_of(findings.position, None, options=options)
     yield Figure(
         caption=f"The loop equations as vectors, head to tail, {where}".rstrip(" ,") + ".",
         picture=scene,
     )
-    unit = found.model.description.length
-    for k, loop in enumerate(found.vectors, 1):
+    unit = findings.model.description.length
+    for k, loop in enumerate(findings.vectors, 1):
         sides = [("left", vector) for vector in loop.left]
         sides += [("right", vector) for vector in loop.right]
         values = [vector.value for _, vector in sides]
@@ -120,10 +119,10 @@ def vectors(found: Findings, template: Template) -> Iterator[Block]:
         )
 
 
-def dimensions(found: Findings, template: Template) -> Iterator[Block]:
+def dimensions(findings: Findings, template: Template) -> Iterator[Block]:
     """The given numbers by their tables in the file, then the parts."""
-    description = found.model.description
-    kinds = {v.name: v.kind for v in found.model.equations.variables}
+    description = findings.model.description
+    kinds = {v.name: v.kind for v in findings.model.equations.variables}
     named = dimension_kinds(traced(description))
     numbers = [n for n in varied_numbers(description) if n.table != "guess"]
     for table, caption in _TABLES.items():
@@ -131,14 +130,14 @@ def dimensions(found: Findings, template: Template) -> Iterator[Block]:
         if not rows:
             continue
         units = [
-            found.model.units.of(named.get(canonical(n.key), Kind.NUMBER))
+            findings.model.units.of(named.get(canonical(n.key), Kind.NUMBER))
             if table == "dimensions"
             else n.unit(description, kinds)
             for n in rows
         ]
         written = [n.written(description) for n in rows]
-        formulas = [f"= {given}" if isinstance(given, str) else "" for given in written]
-        # given numbers as they are, values of formulas rounded
+        formulas = [f"= {entry}" if isinstance(entry, str) else "" for entry in written]
+        # numbers of the file as they are, values of formulas rounded
         cells = [
             short(n.of(description), 7 if formula else 10)
             for n, formula in zip(rows, formulas, strict=True)
@@ -150,74 +149,74 @@ def dimensions(found: Findings, template: Template) -> Iterator[Block]:
         if any(formulas):
             columns.append(Column(header="formula", cells=formulas))
         yield from tables(caption, columns)
-    yield from _points(found)
-    if found.check.measured:
-        links, points, values = zip(*found.check.measured, strict=True)
+    yield from _points(findings)
+    if findings.check.measured:
+        links, points, values = zip(*findings.check.measured, strict=True)
         columns = [
             Column(header="link", cells=links),
             Column(header="points", cells=points),
             Column(header=f"length [{description.length}]", cells=lengths(values), align="point"),
         ]
         yield from tables("Lengths measured in the sketch", columns)
-    if found.check.measured_in_parts:
-        columns = measured_part_columns(found.check)
+    if findings.check.measured_in_parts:
+        columns = measured_part_columns(findings.check)
         yield from tables("Measured in the sketch for parts", columns)
     parts = part_lines(description)
     if parts:
-        names, given = zip(*parts, strict=True)
-        columns = [Column(header="table", cells=names), Column(header="given", cells=given)]
+        names, entry = zip(*parts, strict=True)
+        columns = [Column(header="table", cells=names), Column(header="given", cells=entry)]
         yield from tables("Further data of the file, in its words and units", columns)
 
 
-def _points(found: Findings) -> Iterator[Table]:
+def _points(findings: Findings) -> Iterator[Table]:
     """The coordinates in the file, a row for every point."""
-    description = found.model.description
+    description = findings.model.description
     if not isinstance(description, Draft) or not description.points:
         return
     unit = description.length
-    ground = found.model.equations.fixed
+    ground = findings.model.equations.fixed
     columns = [Column(header="point", cells=list(map(pretty, description.points)))]
     for axis, letter in enumerate("xy"):
-        given = [description.numbers(place[axis]) for place in description.points.values()]
+        coordinates = [description.numbers(place[axis]) for place in description.points.values()]
         header = f"{letter} [{unit}]"
-        columns.append(Column(header=header, cells=list(map(short, given)), align="point"))
+        columns.append(Column(header=header, cells=list(map(short, coordinates)), align="point"))
     of = ["fixed" if name in ground else "sketch" for name in description.points]
     columns.append(Column(header="", cells=of))
     yield from tables("Coordinates of points in the file", columns)
 
 
-def equations(found: Findings, template: Template) -> Iterator[Block]:
+def equations(findings: Findings, template: Template) -> Iterator[Block]:
     """The closure equations in complex form and as scalar equations."""
-    sheet = EquationSheet(found.model.equations)
-    own = sheet.equations
-    kinds = [("unknowns", own.unknowns), ("inputs", own.inputs)]
+    sheet = EquationSheet(findings.model.equations)
+    printed = sheet.equations
+    kinds = [("unknowns", printed.unknowns), ("inputs", printed.inputs)]
     listed = [
         (name, ", ".join(f"{pretty(v.shown)} ({v.kind})" for v in variables))
         for name, variables in kinds
         if variables
     ]
     yield Facts(pairs=tuple(listed))
-    if not own.labels:
+    if not printed.labels:
         yield Paragraph(text="There is no loop: all positions follow from the inputs directly.")
     mathml, latex = MathML(), Latex()
-    if own.loops:
+    if printed.loops:
         yield Note(text="Loop closure equations in complex form")
-        for loop in own.loops:
+        for loop in printed.loops:
             yield Equation(mathml=sheet.loop(loop, mathml).element(), latex=sheet.loop(loop, latex))
         yield Note(text="Scalar equations: real parts, imaginary parts, others")
     rows = zip(sheet.real_rows(mathml), sheet.real_rows(latex), strict=True)
     for row, tex in rows:
         zero = mathml.equation(row, mathml.number("0"))
         yield Equation(mathml=zero.element(), latex=f"{tex} = 0")
-    for law in own.laws:
+    for law in printed.laws:
         if law.meaning:
             yield Paragraph(text=f"{pretty(law.label)}: {law.meaning}")
 
 
-def newton(found: Findings, template: Template) -> Iterator[Block]:
+def newton(findings: Findings, template: Template) -> Iterator[Block]:
     """The iterations of every block: the iterates, then F, J and Δ of each."""
-    position, units = found.position, found.model.units
-    kinds = {v.name: Kind(v.kind) for v in found.model.equations.unknowns}
+    position, units = findings.position, findings.model.units
+    kinds = {v.name: Kind(v.kind) for v in findings.model.equations.unknowns}
     where = inputs_text(position.input, position.input_units)
     yield Paragraph(
         text=f"Newton-Raphson solves F(x) = 0 from the guess of the file {where}".rstrip()
@@ -235,32 +234,32 @@ def newton(found: Findings, template: Template) -> Iterator[Block]:
 
 
 # ----------------------------------------------------------------------
-# Sections about evidence: what is proved, versions, the file.
+# Sections about evidence: proofs, versions, the file.
 
 
-def proof(found: Findings, template: Template) -> Iterator[Block]:
-    """One paragraph on what is proved and what is not, and the evidence in numbers."""
-    sentences = [*_positions(found), *_lists(found), *_unproved(found)]
+def proof(findings: Findings, template: Template) -> Iterator[Block]:
+    """One paragraph on which results are proved, and the evidence in numbers."""
+    sentences = [*_positions(findings), *_lists(findings), *_unproved(findings)]
     yield Paragraph(text=" ".join(sentences))
-    if found.motion is not None and found.motion.found.any():
-        yield Facts(pairs=tuple(evidence_fields(found.motion, _measure(found))))
+    if findings.motion is not None and findings.motion.found.any():
+        yield Facts(pairs=tuple(evidence_fields(findings.motion, _measure(findings))))
 
 
-def _measure(found: Findings) -> str:
-    return " of the longest link" if found.model.equations.loops else ""
+def _measure(findings: Findings) -> str:
+    return " of the longest link" if findings.model.equations.loops else ""
 
 
-def _radius(found: Findings) -> str:
-    return radius_measure(found.model.equations.loops, found.model.equations.real)
+def _radius(findings: Findings) -> str:
+    return radius_measure(findings.model.equations.loops, findings.model.equations.real)
 
 
-def _positions(found: Findings) -> Iterator[str]:
-    motion = found.motion
+def _positions(findings: Findings) -> Iterator[str]:
+    motion = findings.motion
     if motion is None:
-        if not found.position.status.ok:
-            yield f"No position was found: {found.position.message}."
+        if not findings.position.status.ok:
+            yield f"No position was found: {findings.position.message}."
             return
-        certificate = certificate_text(found.position.certificate, _radius(found))
+        certificate = certificate_text(findings.position.certificate, _radius(findings))
         yield f"Certificate of the position: {certificate}."
         return
     there = int(motion.found.sum())
@@ -272,7 +271,7 @@ def _positions(found: Findings) -> Iterator[str]:
     if len(proved):
         yield (
             f"In each of these, a true position lies within {_largest(motion, proved)}"
-            f"{_radius(found)} of the computed one, no other lies near it, and the motion from "
+            f"{_radius(findings)} of the computed one, no other lies near it, and the motion from "
             "the start to it stays on one branch."
         )
     for reason in Certification:
@@ -287,34 +286,34 @@ def _largest(motion: Motion, rows: np.ndarray) -> str:
     return f"{significant(float(motion.radius[rows].max()), 2)}"
 
 
-def _lists(found: Findings) -> Iterator[str]:
+def _lists(findings: Findings) -> Iterator[str]:
     """How many circuits and configurations are proved, and whether their lists are complete."""
-    if found.circuits is not None:
-        certified = sum(circuit.certified for circuit in found.circuits)
-        if len(found.circuits):
-            yield f"Circuits proved to be one curve: {certified} of {len(found.circuits)}."
-        yield _sentence(found.circuits.message)
-    if found.configurations is not None:
-        certified = sum(p.certificate.certified for p in found.configurations)
-        if len(found.configurations):
-            yield f"Proved configurations: {certified} of {len(found.configurations)}."
-        yield _sentence(f"configurations: {found.configurations.message}")
+    if findings.circuits is not None:
+        certified = sum(circuit.certified for circuit in findings.circuits)
+        if len(findings.circuits):
+            yield f"Circuits proved to be one curve: {certified} of {len(findings.circuits)}."
+        yield _sentence(findings.circuits.message)
+    if findings.configurations is not None:
+        certified = sum(p.certificate.certified for p in findings.configurations)
+        if len(findings.configurations):
+            yield f"Proved configurations: {certified} of {len(findings.configurations)}."
+        yield _sentence(f"configurations: {findings.configurations.message}")
 
 
 def _sentence(text: str) -> str:
     return f"{text[:1].upper()}{text[1:]}."
 
 
-def _unproved(found: Findings) -> Iterator[str]:
+def _unproved(findings: Findings) -> Iterator[str]:
     """What carries no proof."""
     others = ["rates", "plots"]
-    others += ["forces"] if found.forces is not None else []
-    others += ["tolerances"] if found.tolerances else []
+    others += ["forces"] if findings.forces is not None else []
+    others += ["tolerances"] if findings.tolerances else []
     listed = f"{', '.join(others[:-1])} and {others[-1]}"
     yield f"Not proved are {listed}: they are computed in double precision from the positions."
 
 
-def versions(found: Findings, template: Template) -> Iterator[Block]:
+def versions(findings: Findings, template: Template) -> Iterator[Block]:
     """The programs that computed the results."""
     yield Facts(
         pairs=(
@@ -325,7 +324,7 @@ def versions(found: Findings, template: Template) -> Iterator[Block]:
     )
 
 
-def file(found: Findings, template: Template) -> Iterator[Block]:
+def file(findings: Findings, template: Template) -> Iterator[Block]:
     """The mechanism file, complete."""
     yield Paragraph(text="All results of this report are computed from the file below.")
-    yield Listing(text=found.source)
+    yield Listing(text=findings.source)

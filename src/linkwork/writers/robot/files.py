@@ -30,9 +30,9 @@ def numbers(*values: float) -> str:
 
 def element(parent: Tree.Element, tag: str, text: str = "", **attributes: str) -> Tree.Element:
     """Add an element."""
-    own = Tree.SubElement(parent, tag, attributes)
-    own.text = text or None
-    return own
+    made = Tree.SubElement(parent, tag, attributes)
+    made.text = text or None
+    return made
 
 
 def written(root: Tree.Element, notes: list[str]) -> str:
@@ -89,8 +89,8 @@ def mjcf_of(robot: Robot) -> str:
     if driven:
         motors = element(root, "actuator")
         for name, joint in driven.items():
-            own = "input" if len(robot.linkage.inputs) == 1 else f"input:{name}"
-            element(motors, "motor", name=own, joint=joint.name)
+            motor = "input" if len(robot.linkage.inputs) == 1 else f"input:{name}"
+            element(motors, "motor", name=motor, joint=joint.name)
     return written(root, robot.notes())
 
 
@@ -117,8 +117,8 @@ def _constraints(root: Tree.Element, robot: Robot) -> None:
     for edge in tree.closing:
         # of welds MuJoCo takes the relative pose in the start position
         if edge.kind is PairKind.FIXED:
-            own = (WORLD if body == GROUND else body for body in edge.bodies)
-            element(equality, "weld", **dict(zip(("body1", "body2"), own, strict=True)))
+            bodies = (WORLD if body == GROUND else body for body in edge.bodies)
+            element(equality, "weld", **dict(zip(("body1", "body2"), bodies, strict=True)))
         else:
             a, b = (f"{body}/{edge.point}" for body in edge.bodies)
             element(equality, "connect", site1=a, site2=b)
@@ -182,13 +182,13 @@ def _sdf_link(model: Tree.Element, robot: Robot, joint: TreeJoint, *, gravity: b
     element(link, "pose", numbers(place.real, place.imag, 0, 0, 0, angle))
     if not gravity:
         element(link, "gravity", "false")
-    own = robot.inertia(joint.child)
+    bar = robot.inertia(joint.child)
     inertial = element(link, "inertial")
-    element(inertial, "pose", numbers(own.center.real, own.center.imag, 0, 0, 0, 0))
-    element(inertial, "mass", numbers(own.mass))
+    element(inertial, "pose", numbers(bar.center.real, bar.center.imag, 0, 0, 0, 0))
+    element(inertial, "mass", numbers(bar.mass))
     inertia = element(inertial, "inertia")
     for name in ("ixx", "iyy", "izz"):
-        element(inertia, name, numbers(own.inertia))
+        element(inertia, name, numbers(bar.inertia))
 
 
 def _is_reserved(name: str) -> bool:
@@ -213,13 +213,13 @@ def _sdf_joint(
 ) -> None:
     """A joint; its frame is at a place in the child's frame."""
     parent, child = (WORLD if body == GROUND else body for body in bodies)
-    own = element(model, "joint", name=name, type=_SDF_KINDS[kind])
-    element(own, "parent", parent)
-    element(own, "child", child)
-    element(own, "pose", numbers(place.real, place.imag, 0, 0, 0, 0))
+    made = element(model, "joint", name=name, type=_SDF_KINDS[kind])
+    element(made, "parent", parent)
+    element(made, "child", child)
+    element(made, "pose", numbers(place.real, place.imag, 0, 0, 0, 0))
     if kind is not PairKind.FIXED:
         axis = (0.0, 0.0, 1.0) if along is None else (along.real, along.imag, 0.0)
-        element(element(own, "axis"), "xyz", numbers(*axis))
+        element(element(made, "axis"), "xyz", numbers(*axis))
 
 
 def _closing(model: Tree.Element, robot: Robot, edge: Pair, k: int) -> None:
@@ -252,8 +252,8 @@ def urdf_of(robot: Robot, motion: Motion) -> str:
     for joint in robot.tree.joints:
         _urdf_link(root, robot, joint)
         _urdf_joint(root, robot, joint, couplings)
-    for name, own in couplings.joints.items():
-        _polynomial(root, name, own, couplings)
+    for name, polynomial in couplings.joints.items():
+        _polynomial(root, name, polynomial, couplings)
     others = [j.name for j in robot.driven().values() if j not in (None, couplings.leading)]
     step = f"Driven as well, here in step with it as in the table: {', '.join(others)}."
     return written(root, [*robot.notes(), *_notes(couplings), *([step] if others else [])])
@@ -277,11 +277,11 @@ def _notes(couplings: Couplings) -> list[str]:
 
 
 def _urdf_link(root: Tree.Element, robot: Robot, joint: TreeJoint) -> None:
-    own = robot.inertia(joint.child)
+    bar = robot.inertia(joint.child)
     inertial = element(element(root, "link", name=joint.child), "inertial")
-    element(inertial, "origin", xyz=numbers(own.center.real, own.center.imag, 0.0), rpy="0 0 0")
-    element(inertial, "mass", value=numbers(own.mass))
-    diagonal = dict.fromkeys(("ixx", "iyy", "izz"), numbers(own.inertia))
+    element(inertial, "origin", xyz=numbers(bar.center.real, bar.center.imag, 0.0), rpy="0 0 0")
+    element(inertial, "mass", value=numbers(bar.mass))
+    diagonal = dict.fromkeys(("ixx", "iyy", "izz"), numbers(bar.inertia))
     element(inertial, "inertia", **diagonal, ixy="0", ixz="0", iyz="0")
 
 
@@ -291,40 +291,40 @@ def _urdf_joint(root: Tree.Element, robot: Robot, joint: TreeJoint, couplings: C
     kind = {PairKind.FIXED: "fixed", PairKind.PIN: "revolute", PairKind.SLIDE: "prismatic"}
     whole = leads and not any(couplings.stopped) and high - low >= 2.0 * math.pi - 1e-9
     turns = whole and joint.edge.kind is PairKind.PIN
-    own = element(
+    made = element(
         root, "joint", name=joint.name, type="continuous" if turns else kind[joint.edge.kind]
     )
     place, angle = robot.mounted(joint)
-    element(own, "origin", xyz=numbers(place.real, place.imag, 0.0), rpy=numbers(0, 0, angle))
-    element(own, "parent", link=joint.parent)
-    element(own, "child", link=joint.child)
+    element(made, "origin", xyz=numbers(place.real, place.imag, 0.0), rpy=numbers(0, 0, angle))
+    element(made, "parent", link=joint.parent)
+    element(made, "child", link=joint.child)
     if joint.edge.kind is PairKind.FIXED:
         return
     along = robot.axis(joint) if joint.edge.kind is PairKind.SLIDE else None
     axis = (0.0, 0.0, 1.0) if along is None else (along.real, along.imag, 0.0)
-    element(own, "axis", xyz=numbers(*axis))
+    element(made, "axis", xyz=numbers(*axis))
     if not leads:
         low, high = couplings.joints[joint.name].range
     ends = {} if turns else {"lower": numbers(low), "upper": numbers(high)}
-    element(own, "limit", **ends, effort=_STRONGEST, velocity=_FASTEST)
+    element(made, "limit", **ends, effort=_STRONGEST, velocity=_FASTEST)
     if not leads:
         factor, offset = couplings.joints[joint.name].line
         leader = couplings.leading.name
-        element(own, "mimic", joint=leader, multiplier=numbers(factor), offset=numbers(offset))
+        element(made, "mimic", joint=leader, multiplier=numbers(factor), offset=numbers(offset))
 
 
-def _polynomial(root: Tree.Element, name: str, own: JointPolynomial, couplings: Couplings) -> None:
-    low, high = own.series.domain.tolist()
+def _polynomial(root: Tree.Element, name: str, form: JointPolynomial, couplings: Couplings) -> None:
+    low, high = form.series.domain.tolist()
     element(
         root,
         "coupling",
-        numbers(*own.series.coef.tolist()),
+        numbers(*form.series.coef.tolist()),
         joint=name,
         driven=couplings.leading.name,
         low=numbers(low),
         high=numbers(high),
-        error=f"{own.error:.3e}",
-        mimic_error=f"{own.line_error:.3e}",
+        error=f"{form.error:.3e}",
+        mimic_error=f"{form.line_error:.3e}",
     )
 
 
@@ -341,7 +341,7 @@ def check_robot_file(file: Path) -> str:
     Raises
     ------
     InputError
-        If there is no such format.
+        If the format does not exist.
     """
     return suffix_of(file, "a robot", _FORMATS)
 
@@ -362,7 +362,7 @@ def robot_of(model: Model, start: Position, motion: Motion | None, file: Path) -
     Raises
     ------
     InputError
-        If there is no such format, or it cannot describe the mechanism.
+        If the format does not exist, or it cannot describe the mechanism.
     """
     suffix = check_robot_file(file)
     robot = Robot(model, start)
@@ -404,8 +404,8 @@ def write_robot(
     Raises
     ------
     InputError
-        If there is no such format, no start position, no equivalent of a part, or the file
-        cannot be written.
+        If the format does not exist, there is no start position or no equivalent of a part, or
+        the file cannot be written.
 
     Examples
     --------

@@ -41,20 +41,20 @@ class JointGraph:
         InputError
             If a part has no equivalent in the formats of robots.
         """
-        own = cls(linkage, {GROUND: (), **linkage.links})
+        graph = cls(linkage, {GROUND: (), **linkage.links})
         for part in linkage.parts:
-            own._add(part)
-        own._pins()
-        return own
+            graph._add(part)
+        graph._pins()
+        return graph
 
     def _add(self, part: Part) -> None:
-        found = part.pairs(self.linkage)
-        if found is None:
+        pairs = part.pairs(self.linkage)
+        if pairs is None:
             raise InputError(
                 f'"{part.label}" ({part.title.lower()}) has no equivalent in files for '
                 "robots: they have pins, slides and constant ratios only"
             )
-        for body in found.bodies:
+        for body in pairs.bodies:
             self.bodies[body.name] = body.points
             if body.angle:
                 self.turning[body.name] = body.angle
@@ -62,14 +62,14 @@ class JointGraph:
                 self.blocks[body.name] = body.on
             if not body.pinned:
                 self.unpinned.add(body.name)
-        self.edges += found.pairs
-        self.couplings += found.couplings
+        self.edges += pairs.pairs
+        self.couplings += pairs.couplings
 
     def _pins(self) -> None:
-        """A pin from the first body at every point to each of the others."""
+        """A pin from the first body at every point to each further body."""
         welded = {edge.bodies for edge in self.edges if edge.kind is PairKind.FIXED}
         for point in self.linkage.points:
-            here = [b for b, own in self.bodies.items() if point in own and b not in self.unpinned]
+            here = [b for b, on in self.bodies.items() if point in on and b not in self.unpinned]
             for k, body in enumerate(here[1:], 1):
                 known = here[:k]
                 # welded bodies need no pin between them
@@ -132,19 +132,19 @@ class JointTree:
         InputError
             If a body is not joined to ground.
         """
-        own, driven = cls(graph), graph.driven()
+        tree, driven = cls(graph), graph.driven()
         group = {body: body for body in graph.bodies}
         taken: list[Pair] = []
 
         def order(edge: Pair) -> tuple[int, int, bool]:
             pair = frozenset(edge.bodies)
-            wanted = edge.kind is not PairKind.FIXED and pair not in driven
-            return int(wanted), edge.kind.value, GROUND not in pair
+            later = edge.kind is not PairKind.FIXED and pair not in driven
+            return int(later), edge.kind.value, GROUND not in pair
 
         for edge in sorted(graph.edges, key=order):
             first, second = (group[body] for body in edge.bodies)
             if first == second:
-                own.closing.append(edge)
+                tree.closing.append(edge)
                 continue
             taken.append(edge)
             group = {body: first if g == second else g for body, g in group.items()}
@@ -153,9 +153,9 @@ class JointTree:
             raise InputError(
                 f'"{loose[0]}" is not joined to ground by pins and slides: a robot is one tree'
             )
-        own.closing = [own._closed(edge, taken) for edge in own.closing]
-        own._grow(taken)
-        return own
+        tree.closing = [tree._closed(edge, taken) for edge in tree.closing]
+        tree._grow(taken)
+        return tree
 
     def _closed(self, edge: Pair, taken: list[Pair]) -> Pair:
         """The joint that closes a loop: a slide becomes a sliding block and a weld to it."""
@@ -186,16 +186,16 @@ class JointTree:
     def origin(self, body: str) -> str:
         """The point at the origin of a body's frame."""
         edge = self.by_child[body].edge
-        own = self.graph.bodies[body]
-        return edge.point if edge.point in own else own[0]
+        points = self.graph.bodies[body]
+        return edge.point if edge.point in points else points[0]
 
     def path(self, body: str) -> list[TreeJoint]:
         """The joints from a body back to ground."""
-        found = []
+        path = []
         while body != GROUND:
-            found.append(self.by_child[body])
-            body = found[-1].parent
-        return found
+            path.append(self.by_child[body])
+            body = path[-1].parent
+        return path
 
     def ratios(self, coupling: Coupling) -> dict[str, float]:
         """The factors of joint values whose sum is zero, by joint.
@@ -238,7 +238,7 @@ class JointTree:
             return joint.sign * jet.v, joint.sign * d1
         child, parent = (self.angle(geometry, body) for body in (joint.child, joint.parent))
         turn = np.array(child[0] - parent[0])
-        # a row without a position must not take the others with it
+        # a row without a position must not affect other rows
         known = np.isfinite(turn)
         turn[known] = np.unwrap(turn[known])
         return turn, child[1] - parent[1]

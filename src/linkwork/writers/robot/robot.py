@@ -24,7 +24,7 @@ from linkwork.writers.robot.joint_tree import JointGraph, JointTree, TreeJoint
 
 _DENSITY = 1.0  # kg/m of bodies without a mass in the file
 _SMALL = 0.01  # of the longest link: the least size of a body, for its inertia
-_TRACE = 1e-3  # of a bar of this size: what stands for no mass
+_TRACE = 1e-3  # of a bar of this size: stands in for a mass of 0
 _LEAST = 1e-14  # kg, and kg m²: MuJoCo refuses bodies below 1e-15
 
 
@@ -118,20 +118,20 @@ class Robot:
         places = list(self.points(body).values())
         least = _SMALL * self.start.length * self.metre
         extent = max([abs(a - b) for a in places for b in places] + [least])
-        given = self.linkage.spelled_masses().get(body)
-        if given is None:
+        stated = self.linkage.spelled_masses().get(body)
+        if stated is None:
             mass = max(_DENSITY * extent, _LEAST)
             middle = sum(places) / len(places)
             inertia = max(mass * extent**2 / 12.0, _LEAST)
             return Inertia(mass=mass, center=middle, inertia=inertia)
         numbers = self.linkage.numbers
-        mass = numbers(given.mass) * float(MASSES[self.linkage.mass])
+        mass = numbers(stated.mass) * float(MASSES[self.linkage.mass])
         mass = max(mass or _TRACE * _DENSITY * least, _LEAST)
-        inertia = numbers(given.inertia) * float(MASSES[self.linkage.mass]) * self.metre**2
+        inertia = numbers(stated.inertia) * float(MASSES[self.linkage.mass]) * self.metre**2
         first = self.place(self.linkage.links[body][0])
-        x, y = map(numbers, given.center or (0, 0))
+        x, y = map(numbers, stated.center or (0, 0))
         center = complex(x, y) * self.metre
-        if given.shape == "rod":
+        if stated.shape == "rod":
             span = abs(self.place(self.linkage.links[body][1]) - first)
             center, inertia = span / 2.0 + 0j, mass * span**2 / 12.0
         turned = center * cmath.rect(1.0, self.frame(body)[1])
@@ -141,28 +141,28 @@ class Robot:
 
     def gravity(self) -> complex:
         """The acceleration of free fall [m/s²]; zero without gravity in the file."""
-        given = self.linkage.gravity
-        if given is None:
+        stated = self.linkage.gravity
+        if stated is None:
             return 0j
-        size = given.acceleration(self.linkage.numbers, self.linkage.length) * self.metre
-        if given.angle is None:
+        size = stated.acceleration(self.linkage.numbers, self.linkage.length) * self.metre
+        if stated.angle is None:
             return -1j * size
-        return cmath.rect(size, self.linkage.numbers(given.angle) * self.linkage.angle.radians)
+        return cmath.rect(size, self.linkage.numbers(stated.angle) * self.linkage.angle.radians)
 
     def values(self, motion: Motion) -> dict[str, tuple[Array, Array]]:
         """Joint values in the rows of a motion and their derivatives by the leading input.
 
         In rad and m, from the start position, (B,) each; NaN in rows without a position.
         """
-        geometry, found = Geometry(self.model, motion), {}
+        geometry, values = Geometry(self.model, motion), {}
         for joint in self.tree.joints:
             if joint.edge.kind is PairKind.FIXED:
                 continue
             value, rate = self.tree.value(geometry, joint)
             scale = self.metre if joint.edge.kind is PairKind.SLIDE else 1.0
             zero = self.tree.value(self.start, joint)[0][0]
-            found[joint.name] = (scale * (value - zero), scale * np.asarray(rate))
-        return found
+            values[joint.name] = (scale * (value - zero), scale * np.asarray(rate))
+        return values
 
     def per_metre(self, name: str) -> float:
         """Length units of the file per unit of a joint value."""
@@ -176,16 +176,16 @@ class Robot:
         """
         names = self.model.motion_quantities.names
         pairs = self.tree.graph.driven()
-        found: dict[str, TreeJoint | None] = {}
+        driven: dict[str, TreeJoint | None] = {}
         for k, (quantity, which) in enumerate(zip(names.inputs, self.linkage.inputs, strict=True)):
             kind, name = which.drives
             if kind in ("slider", "cylinder"):
-                own = (j for j in self.tree.joints if j.edge.name == name)
+                candidates = (j for j in self.tree.joints if j.edge.name == name)
             else:
                 pins = (j for j in self.tree.joints if j.edge.kind is PairKind.PIN)
-                own = (j for j in pins if pairs.get(frozenset((j.parent, j.child))) == k)
-            found[quantity] = next(own, None)
-        return dict(sorted(found.items(), key=lambda item: item[0] != names.lead))
+                candidates = (j for j in pins if pairs.get(frozenset((j.parent, j.child))) == k)
+            driven[quantity] = next(candidates, None)
+        return dict(sorted(driven.items(), key=lambda item: item[0] != names.lead))
 
     def leading(self) -> TreeJoint | None:
         """The joint of the tree that the leading input drives."""
@@ -202,7 +202,7 @@ class Robot:
                 f"Assumed masses, slender bars of {_DENSITY:g} kg/m: {', '.join(assumed)}."
             )
         numbers = self.linkage.numbers
-        none = [b for b, own in self.linkage.spelled_masses().items() if numbers(own.mass) == 0.0]
+        none = [b for b, mass in self.linkage.spelled_masses().items() if numbers(mass.mass) == 0.0]
         if none:
             lines.append(
                 f"A small mass instead of none, which simulators refuse: {', '.join(none)}."
@@ -269,10 +269,10 @@ def couplings_of(robot: Robot, motion: Motion) -> Couplings:
     values = robot.values(motion)
     x, rate = values.pop(leading.name)
     with np.errstate(all="ignore"):
-        slopes = {name: own_rate / rate for name, (_, own_rate) in values.items()}
+        slopes = {name: joint_rate / rate for name, (_, joint_rate) in values.items()}
     # at a dead point slopes are infinite, at rest they are unknown
     known = np.logical_and.reduce(np.isfinite([x, *slopes.values()]))
-    rows = _rows(x, motion, known)
+    rows = _fitted_rows(x, motion, known)
     if len(rows) < 5:
         raise InputError(
             f"{len(rows)} positions around the start are too few for the polynomials of a URDF "
@@ -287,17 +287,17 @@ def couplings_of(robot: Robot, motion: Motion) -> Couplings:
     return Couplings(leading=leading, limits=limits, stopped=stopped, joints=joints)
 
 
-def _rows(x: Array, motion: Motion, known: BoolArray) -> CountArray:
+def _fitted_rows(x: Array, motion: Motion, known: BoolArray) -> CountArray:
     """The rows around the start position without a gap, by increasing value of the joint."""
-    asked = np.flatnonzero(motion.asked)
-    good = motion.found[asked] & known[asked]
+    requested = np.flatnonzero(motion.asked)
+    good = motion.found[requested] & known[requested]
     if not good.any():
-        return asked[:0]
-    here = int(np.argmin(np.where(good, np.abs(x[asked]), np.inf)))
+        return requested[:0]
+    here = int(np.argmin(np.where(good, np.abs(x[requested]), np.inf)))
     gaps = np.flatnonzero(~good)
     low = max(gaps[gaps < here], default=-1) + 1
-    high = min(gaps[gaps > here], default=len(asked))
-    part = asked[low:high]
+    high = min(gaps[gaps > here], default=len(requested))
+    part = requested[low:high]
     return part[np.argsort(x[part])]
 
 
@@ -340,16 +340,16 @@ def _limits(
     """The ends of the driven joint's range, and whether dead points are there."""
     names = robot.model.motion_quantities.names
     kind = names.inputs[names.lead]
-    own = motion.inputs[names.lead]
+    lead_values = motion.inputs[names.lead]
     scale = robot.model.units.scale(kind) / robot.per_metre(leading.name)
     values, rates = robot.values(motion)[leading.name]
     slope = float(np.sign(rates[row])) * scale
     ends, stopped = [float(x[0]), float(x[-1])], [False, False]
-    if robot.model.untimed is not None:  # limits are given by time
+    if robot.model.untimed is not None:  # limits are at times
         return (ends[0], ends[1]), (False, False)
     step = 1.001 * float(np.diff(x).max())
     for limit in motion.limits:
-        at = values[row] + slope * (limit.input - own[row])
+        at = values[row] + slope * (limit.input - lead_values[row])
         for k, beyond in ((0, ends[0] - at), (1, at - ends[1])):
             if limit.kind is LimitKind.DEAD_POINT and 0.0 <= beyond <= step:
                 ends[k], stopped[k] = float(at), True

@@ -57,10 +57,10 @@ def computed(text: str, names: dict[str, Entry], unit: AngleUnit = AngleUnit.RAD
     """A formula of entries."""
     formula = CellFormula(parse(text), unit)
     cells = {
-        name: own.text if _CELL.fullmatch(own.text) else f"({own.text})"
-        for name, own in names.items()
+        name: entry.text if _CELL.fullmatch(entry.text) else f"({entry.text})"
+        for name, entry in names.items()
     }
-    value = formula.value({name: own.value for name, own in names.items()})
+    value = formula.value({name: entry.value for name, entry in names.items()})
     return Entry(formula.text(cells), float(value))
 
 

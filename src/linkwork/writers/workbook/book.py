@@ -32,7 +32,7 @@ _LONGEST = 200
 
 
 def chart_text(text: str) -> str:
-    """A text for a chart's title or axis: XlsxWriter takes what looks like ``sheet!A1`` for a cell.
+    """A text for a chart's title or axis: XlsxWriter reads text like ``sheet!A1`` as a cell.
 
     An invisible character (U+2060, word joiner) after the mark makes it a text.
     """
@@ -46,9 +46,9 @@ class CellNames:
     cells: dict[str, str] = field(default_factory=dict)
     _used: set[str] = field(default_factory=set)
 
-    def claim(self, key: str, wanted: str) -> str:
+    def claim(self, key: str, preferred: str) -> str:
         """A cell name for ``key``, as similar as possible to the preferred one."""
-        stem = _ODD.sub("_", canonical(wanted).replace("'", "_prime"))[:_LONGEST]
+        stem = _ODD.sub("_", canonical(preferred).replace("'", "_prime"))[:_LONGEST]
         if not (stem[0].isalpha() or stem[0] == "_"):
             stem = f"_{stem}"
         if _TAKEN.fullmatch(stem):
@@ -149,7 +149,7 @@ class Iterations:
     above : (R,)
         The row from which each row starts, -1 for a separate estimate.
     found, live : (R,) bool
-        Rows with a position, and those whose cells find it.
+        Rows with a position, and those whose cells converge to it.
     """
 
     rows: IndexArray
@@ -174,20 +174,20 @@ def iterated(model: Model, motion: Motion, closure: ClosureFormulas) -> Iteratio
     scale = _file_units(model)
     inputs = np.stack([motion.inputs[v.name] for v in model.equations.inputs], axis=1)[rows]
     right = np.concatenate([motion.q[rows] / scale[: motion.q.shape[1]], inputs], axis=1)
-    found = motion.found[rows] & np.isfinite(right).all(axis=1)
-    right[~found] = np.nan
+    solved = motion.found[rows] & np.isfinite(right).all(axis=1)
+    right[~solved] = np.nan
     before = np.full(len(rows), -1, dtype=np.intp)
     last = -1
     for k in range(len(rows)):
         before[k] = last
         # rows without a position are skipped: nothing can start from them
-        last = k if found[k] else last
+        last = k if solved[k] else last
     start, above = _rounded(model, right), np.full(len(rows), -1, dtype=np.intp)
     values = np.repeat(right[None], _MOST + 1, axis=0)
     live = np.zeros(len(rows), dtype=bool)
     # each attempt takes the rows that the one before it could not recalculate
     for attempt in ("above", "estimate", "value"):
-        trying = np.flatnonzero(found & ~live & ((before >= 0) | (attempt != "above")))
+        trying = np.flatnonzero(solved & ~live & ((before >= 0) | (attempt != "above")))
         if attempt == "above":
             guess = right[before[trying]]
         else:
@@ -199,7 +199,7 @@ def iterated(model: Model, motion: Motion, closure: ClosureFormulas) -> Iteratio
         live[trying[good]] = True
         if attempt == "above":
             above[trying[good]] = before[trying[good]]
-        # the cells of such a row hold the solution itself
+        # the cells of such a row hold the solution
         elif attempt == "value":
             values[:, trying[~good]] = right[trying[~good]]
     needed = _needed(model, values[:, live])
@@ -207,7 +207,7 @@ def iterated(model: Model, motion: Motion, closure: ClosureFormulas) -> Iteratio
         rows=rows,
         values=values[: min(max(needed + _SPARE, _FEWEST), _MOST) + 1],
         above=above,
-        found=found,
+        found=solved,
         live=live,
     )
 
@@ -240,17 +240,17 @@ def _newton(model: Model, closure: ClosureFormulas, guess: Array, right: Array) 
     for block, formulas in zip(model.compiled.solver.blocks, closure.blocks, strict=True):
         if not formulas.rows:
             continue
-        own = block.unknowns
-        known[:, own] = guess[:, own]
-        values[0][:, own] = guess[:, own]
+        unknowns = block.unknowns
+        known[:, unknowns] = guess[:, unknowns]
+        values[0][:, unknowns] = guess[:, unknowns]
         for k in range(_MOST):
             here = (known * scale)[:, block.variables]
             with np.errstate(all="ignore"):
                 f, jacobian = block.system.residual_and_jacobian(here)
                 # full steps: cells have no step control
-                change, _ = corrections(jacobian[:, :, : len(own)], f)
-            known[:, own] += change / scale[own]
-            values[k + 1][:, own] = known[:, own]
+                change, _ = corrections(jacobian[:, :, : len(unknowns)], f)
+            known[:, unknowns] += change / scale[unknowns]
+            values[k + 1][:, unknowns] = known[:, unknowns]
     return values
 
 
@@ -308,15 +308,15 @@ class Book:
     def __post_init__(self) -> None:
         self.style = Style(self.workbook)
         for dimension in self.dimensions:
-            wanted = dimension.name if dimension.kind == "dimensions" else _cell_stem(dimension)
-            self.names.claim(dimension.key, wanted)
+            stem = dimension.name if dimension.kind == "dimensions" else _cell_stem(dimension)
+            self.names.claim(dimension.key, stem)
             self.values[dimension.key] = dimension.value
         for k, variable in enumerate(self.variables):
             self.names.claim(variable.symbol, variable.shown)
             self.values[variable.symbol] = self.iterations.values[-1][:, k]
         for variable in self.model.equations.inputs:  # known in rows without a position, too
-            own = self.motion.inputs[variable.name]
-            self.values[variable.symbol] = own[self.iterations.rows]
+            series = self.motion.inputs[variable.name]
+            self.values[variable.symbol] = series[self.iterations.rows]
         for link in self.closure.links:
             self.names.claim(canonical(link), f"theta_{link}")
         for point in self.closure.points:
@@ -364,11 +364,11 @@ class Book:
     @cached_property
     def used(self) -> set[str]:
         """The keys of everything that a formula uses, derived dimensions included."""
-        found = set(self._used())
+        used = set(self._used())
         for dimension in reversed(self.traced.dimensions):
-            if dimension.key in found and dimension.formula is not None:
-                found |= {node.name for node in names_in(dimension.formula)}
-        return found
+            if dimension.key in used and dimension.formula is not None:
+                used |= {node.name for node in names_in(dimension.formula)}
+        return used
 
     def _used(self) -> Iterator[str]:
         closure = self.closure

@@ -39,14 +39,14 @@ def _curves(book: Book, kind: Kind) -> list[tuple[str, str]]:
     """Keys and names of all quantities of one kind."""
     equations = book.model.equations
     named = book.motion.unknowns
-    found = [
+    curves = [
         (v.symbol, book.shown(v))
         for v in equations.unknowns
         if v.kind == kind.value and v.name in named
     ]
     outputs = {name: equations.outputs[name].kind for name in book.closure.outputs}
-    found += [(f"output {name}", name) for name, own in outputs.items() if own == kind.value]
-    return found
+    curves += [(f"output {name}", name) for name, unit in outputs.items() if unit == kind.value]
+    return curves
 
 
 def _chart(book: Book, kind: Kind, curves: list[tuple[str, str]], columns: dict[str, int]) -> Any:
@@ -99,7 +99,7 @@ def _right_angles(span: float) -> float:
 
 
 # ----------------------------------------------------------------------
-# The sheet of Linkwork's own results, for comparison.
+# The sheet of Linkwork's results, for comparison.
 
 
 _WIDEST, _STATEMENT = 24, 40  # width of columns
@@ -218,13 +218,13 @@ def _checks(book: Book, sheet: Any, columns: CycleColumns, row: int) -> int:
         letter = column_name(column)
         return f"{CYCLE}!{letter}{rows[0]}:{letter}{rows[1]}"
 
-    found = int(book.iterations.found.sum())
+    solved = int(book.iterations.found.sum())
     lines: list[tuple[str, str, float, str]] = []
-    if found:
+    if solved:
         largest = f"=MAX({whole(columns.largest)})"
         lines.append(("Largest relative difference", largest, 0.0, "result"))
     closing = f'=COUNTIF({whole(columns.closes)},"yes")'
-    lines.append(("Rows with a position", closing, found, "result_count"))
+    lines.append(("Rows with a position", closing, solved, "result_count"))
     proved = f'=COUNTIF({whole(columns.status)},"proved for*")'
     certified = sum(statement(book, int(k)).startswith("proved for") for k in book.iterations.rows)
     lines.append(("Rows still proved", proved, certified, "result_count"))
@@ -257,8 +257,8 @@ def notices(book: Book) -> Iterator[str]:
     unknowns = book.model.equations.unknowns
     for block in book.closure.blocks:
         if block.reason:
-            own = ", ".join(book.shown(unknowns[k]) for k in block.unknowns)
-            yield f"{own}: {block.reason}; the column contains Linkwork's values"
+            listed = ", ".join(book.shown(unknowns[k]) for k in block.unknowns)
+            yield f"{listed}: {block.reason}; the column contains Linkwork's values"
     fixed = [d.name for d in book.dimensions if not d.live]
     if fixed:
         yield (
@@ -287,7 +287,7 @@ def notices(book: Book) -> Iterator[str]:
     done = book.iterations
     apart = int((done.live & (done.above < 0)).sum()) - 1
     if apart > 0:
-        yield f"rows that start from estimates of their own, yellow cells of Newton: {apart}"
+        yield f"rows that start from separate estimates, yellow cells of Newton: {apart}"
     added = int(np.count_nonzero(book.motion.added))
     if added:
         yield (

@@ -115,11 +115,11 @@ class StatusFormulas:
         """Whether the input is the one that Linkwork solved."""
         parts = []
         for variable in self.book.model.equations.inputs:
-            own = column_name(self.columns.of[variable.symbol])
+            letter = column_name(self.columns.of[variable.symbol])
             other = column_name(self.book.linkwork_columns[variable.name])
             size = float(abs(self.book.motion.inputs[variable.name]).max()) or 1.0
             near = cell_number(float(f"{_SAME_INPUT * size:.1e}"))
-            parts.append(f"ABS({own}{FIRST + k + 1}-{LINKWORK}!{other}{self.source(k)})<={near}")
+            parts.append(f"ABS({letter}{FIRST + k + 1}-{LINKWORK}!{other}{self.source(k)})<={near}")
         return ",".join(parts)
 
     def source(self, k: int) -> int:
@@ -128,14 +128,14 @@ class StatusFormulas:
 
     def difference(self, k: int) -> str:
         """The distance of the unknowns from Linkwork's, of a radian and of the longest link."""
-        found, row = [], FIRST + k + 1
-        for size, own, other, count in self._runs:
-            mine, theirs = (
+        terms, row = [], FIRST + k + 1
+        for size, column, other, count in self._runs:
+            here, theirs = (
                 f"{column_name(first)}{line}:{column_name(first + count - 1)}{line}"
-                for first, line in ((own, row), (other, self.source(k)))
+                for first, line in ((column, row), (other, self.source(k)))
             )
-            found.append(f"SUMXMY2({mine},{LINKWORK}!{theirs})/{cell_number(size)}^2")
-        distance = f"SQRT({'+'.join(found)})" if found else "0"
+            terms.append(f"SUMXMY2({here},{LINKWORK}!{theirs})/{cell_number(size)}^2")
+        distance = f"SQRT({'+'.join(terms)})" if terms else "0"
         return f'IF(as_solved="yes",IFERROR({distance},"-"),"-")'
 
     @cached_property
@@ -151,8 +151,8 @@ class StatusFormulas:
         groups = groupby(enumerate(listed), lambda e: (e[1][0], e[1][1] - e[0], e[1][2] - e[0]))
         runs = []
         for _, entries in groups:
-            own = [entry for _, entry in entries]
-            runs.append((*own[0], len(own)))
+            run = [entry for _, entry in entries]
+            runs.append((*run[0], len(run)))
         return runs
 
     def closes(self, k: int) -> str:
@@ -178,9 +178,9 @@ class StatusFormulas:
             largest = f"{column_name(self.columns.largest)}{row}"
             holds = f"AND({holds},{largest}<={cell_number(_CELL_AGREES)})"
         closes = f"{column_name(self.columns.closes)}{row}"
-        own = f'IF({closes}="yes",{self._converged},{self._lost(row)})'
+        solved = f'IF({closes}="yes",{self._converged},{self._lost(row)})'
         stale = 'IF(unused_changes>0,"not solved: a changed cell is not used"'
-        return f"IF({holds},{said},{stale},{own}))"
+        return f"IF({holds},{said},{stale},{solved}))"
 
     @cached_property
     def _held(self) -> list[Variable]:
@@ -213,9 +213,9 @@ class StatusFormulas:
             variable = next(
                 v for v in book.model.equations.unknowns if v.name == redundant.variable
             )
-            given = formula.text(book.names.cells)
+            released = formula.text(book.names.cells)
             near = cell_number(float(f"{_CELL_AGREES * book.model.equations.length_scale:.1e}"))
-            fits = f"ABS({book.names.cells[variable.symbol]}-({given}))<={near}"
+            fits = f"ABS({book.names.cells[variable.symbol]}-({released}))<={near}"
             link = redundant.link[:_LONGEST].replace('"', "'")
             text = f'IF({fits},{text},"redundant link {link} does not fit")'
         return text
@@ -307,18 +307,18 @@ class _Page:
     def _unknown(self, number: int, variable: Variable, k: int) -> str:
         """The formula of an unknown in one row: the last iterate, or Linkwork's value, or #N/A."""
         book, done, row = self.book, self.book.iterations, FIRST + k + 1
-        own = "NA()"
+        solved = "NA()"
         if done.found[k] and variable.name in book.motion.unknowns:
             letter = column_name(book.linkwork_columns[variable.name])
-            own = f"{LINKWORK}!{letter}{self.status.source(k)}"
+            solved = f"{LINKWORK}!{letter}{self.status.source(k)}"
         elif done.found[k]:
-            own = cell_number(float(done.values[-1][k, number]))
+            solved = cell_number(float(done.values[-1][k, number]))
         last = self.newton.last.get(number)
         if last is None:
             # its cells do not solve: right for the inputs of the file only
-            return f"IF(AND({self.status.same_input(k)}),{own},NA())"
+            return f"IF(AND({self.status.same_input(k)}),{solved},NA())"
         iterate = f'IF(converged="yes",{NEWTON}!{column_name(last)}{row},NA())'
-        return iterate if done.live[k] else f'IF(as_solved="yes",{own},{iterate})'
+        return iterate if done.live[k] else f'IF(as_solved="yes",{solved},{iterate})'
 
     def _equations(self) -> None:
         book = self.book
@@ -366,17 +366,17 @@ class _Page:
         self.sheet.write(FIRST - 2, columns.status, "status", book.style["head_indented"])
         self.sheet.write(FIRST - 1, columns.status, "", book.style["unit"])
         status = self.status
-        for k, found in enumerate(book.iterations.found.tolist()):
-            closes = "yes" if found else "NO"
+        for k, solved in enumerate(book.iterations.found.tolist()):
+            closes = "yes" if solved else "NO"
             said = statement(book, int(book.iterations.rows[k]))
             for column, formula, value, look in (
                 (columns.as_solved, status.as_solved(k), "yes", "right"),
-                (columns.largest, status.difference(k), 0.0 if found else "-", "relative"),
+                (columns.largest, status.difference(k), 0.0 if solved else "-", "relative"),
                 (columns.closes, status.closes(k), closes, "right"),
                 (columns.status, status.status(k), said, "status"),
             ):
-                own = book.style[look]
-                self.sheet.write_formula(FIRST + k, column, f"={formula}", own, value)
+                cell_style = book.style[look]
+                self.sheet.write_formula(FIRST + k, column, f"={formula}", cell_style, value)
         self._highlight()
 
     def _highlight(self) -> None:

@@ -87,12 +87,12 @@ class _Page:
 
     def _watch(self, row: int, value: float, *, used: bool = True, computed: bool = False) -> None:
         """Write the value that Linkwork solved, and a mark if the cell differs from it."""
-        cell, own = f"B{row + 1}", f"E{row + 1}"
-        same = f"{cell}={own}"
+        cell, saved = f"B{row + 1}", f"E{row + 1}"
+        same = f"{cell}={saved}"
         if computed:
             size = self.book.model.equations.length_scale
             near = cell_number(float(f"{_ROUNDED * max(abs(value), size):.1e}"))
-            same = f"ABS({cell}-{own})<={near}"
+            same = f"ABS({cell}-{saved})<={near}"
         self.sheet.write_number(row, 4, value, self.book.style["solved"])
         mark = _CHANGED if used else _UNUSED
         formula = f'=IF(ISNUMBER({cell}),IF({same},"","{mark}"),"{mark}")'
@@ -127,10 +127,10 @@ class _Page:
         }  # fmt: skip
         self._kinds = dimension_kinds(self.book.traced)
         for kind, title in titles.items():
-            found = [d for d in self.book.dimensions if d.kind == kind]
-            if found:
+            listed = [d for d in self.book.dimensions if d.kind == kind]
+            if listed:
                 self._section(title)
-            for dimension in found:
+            for dimension in listed:
                 self._dimension(dimension)
 
     def _dimension(self, dimension: Dimension) -> None:
@@ -172,8 +172,8 @@ class _Page:
         inputs = book.model.equations.inputs
         self._section("Input: first value and step of the rows")
         for variable in inputs:
-            own = book.motion.inputs[variable.name][book.iterations.rows]
-            table = input_table(own)
+            values = book.motion.inputs[variable.name][book.iterations.rows]
+            table = input_table(values)
             for part, word in enumerate(("from", "step")):
                 key = f"{word} {variable.symbol}"
                 if table is None:
@@ -190,7 +190,7 @@ class _Page:
                 self.row += 1
 
     def _speeds(self) -> None:
-        """Write the speed of the leading input, and those of the others that move with it."""
+        """Write the speeds of the leading input and of the inputs that move with it."""
         book = self.book
         number, rates = book.lead
         lead = book.leading
@@ -213,12 +213,12 @@ class _Page:
         """The speed of an input that moves with the leading one."""
         book = self.book
         changes = []
-        for own in (variable, book.leading):
-            step = book.names.cells.get(f"step {own.symbol}")
+        for driven in (variable, book.leading):
+            step = book.names.cells.get(f"step {driven.symbol}")
             if step is None:
-                letter = column_name(1 + book.model.equations.inputs.index(own))
+                letter = column_name(1 + book.model.equations.inputs.index(driven))
                 step = f"({CYCLE}!{letter}{book.last}-{CYCLE}!{letter}{FIRST + 1})"
-            changes.append(f"RADIANS({step})" if book.scale(own) != 1.0 else step)
+            changes.append(f"RADIANS({step})" if book.scale(driven) != 1.0 else step)
         speed = book.names.cells[rate_key(book.leading.symbol, 1)]
         return f"IF({changes[1]}=0,0,{speed}*{changes[0]}/{changes[1]})"
 

@@ -52,8 +52,8 @@ class _Page:
     def write(self) -> None:
         """Write the row number, its input, its points and the lines of the picture."""
         book, sheet, style = self.book, self.sheet, self.book.style
-        found = np.flatnonzero(book.iterations.found)
-        self.shown = int(found[len(found) // 6])
+        solved = np.flatnonzero(book.iterations.found)
+        self.shown = int(solved[len(solved) // 6])
         sheet.set_default_row(_ROW)  # explicit row height, since other defaults distort the chart
         sheet.set_column(0, 0, 18)
         sheet.set_column(1, 2, 14)
@@ -173,12 +173,12 @@ class _Page:
             angle = 360 * k // _ROUND
             self.sheet.write(self.bottom, 0, name)
             turned = math.cos(math.radians(angle)), math.sin(math.radians(angle))
-            for column, function, own, part in zip(
+            for column, function, coordinate, part in zip(
                 (1, 2), ("COS", "SIN"), (x, y), turned, strict=True
             ):
                 origin = f"{column_name(column)}{self.place[center] + 1}"
                 formula = f"={origin}+{radius!r}*{function}(RADIANS({angle}))"
-                value = cached(float(own) + radius * part)
+                value = cached(float(coordinate) + radius * part)
                 look_of = self.book.style["number"]
                 self.sheet.write_formula(self.bottom, column, formula, look_of, value)
             self.bottom += 1
@@ -227,9 +227,9 @@ class _Page:
             ]
             low, high = np.nanmin(columns), np.nanmax(columns)
             for _, center, radius in book.model_circles:
-                own = book.over_rows(book.values[coordinate_name(center, axis)])
-                low = min(low, np.nanmin(own) - radius)
-                high = max(high, np.nanmax(own) + radius)
+                series = book.over_rows(book.values[coordinate_name(center, axis)])
+                low = min(low, np.nanmin(series) - radius)
+                high = max(high, np.nanmax(series) + radius)
             lows.append(float(low))
             highs.append(float(high))
         widest = 1.16 * max(high - low for low, high in zip(lows, highs, strict=True)) or 1.0

@@ -43,8 +43,8 @@ class _Page:
     row: int = 3
 
     def __post_init__(self) -> None:
-        found = np.flatnonzero(self.book.iterations.found)
-        self.shown = int(found[len(found) // 6])
+        solved = np.flatnonzero(self.book.iterations.found)
+        self.shown = int(solved[len(solved) // 6])
         self.bodies = [link for link in self.linkage.links if link != GROUND]
         units = self.book.model.units
         self.length, force = units.of(Kind.LENGTH), units.of(Kind.FORCE)
@@ -77,9 +77,9 @@ class _Page:
             for key, name in self.book.names.cells.items()
             if key in self.book.values and np.ndim(self.book.values[key]) == 0
         }
-        found = Reactions(self.book.model, self.linkage, self.along, self.way, cells)
-        join_links(found)
-        return found
+        reactions = Reactions(self.book.model, self.linkage, self.along, self.way, cells)
+        join_links(reactions)
+        return reactions
 
     # What is picked from other sheets
 
@@ -122,10 +122,10 @@ class _Page:
 
     def _lines(self) -> None:
         """The unit vectors of lines, and where parts push each other."""
-        given = {
+        candidates = {
             part.label: part.body or getattr(part, "line", None) for part in self.linkage.parts
         }
-        lines = {name: line for name, line in given.items() if line}
+        lines = {name: line for name, line in candidates.items() if line}
         if lines:
             self._heads("line", ("along x", ""), ("along y", ""))
         self.along: dict[str, tuple[Entry, Entry]] = {}
@@ -149,9 +149,9 @@ class _Page:
     def _coordinates(self, points: dict[str, str]) -> dict[str, Entry]:
         """The coordinates of points as names of formulas: ``ax``, ``ay`` of ``a``."""
         return {
-            f"{letter}{axis}": own
+            f"{letter}{axis}": entry
             for letter, point in points.items()
-            for axis, own in zip("xy", self.at[point], strict=True)
+            for axis, entry in zip("xy", self.at[point], strict=True)
         }
 
     def _vector(
@@ -159,17 +159,17 @@ class _Page:
     ) -> tuple[Entry, Entry]:
         """Two cells of formulas, from this column on."""
         self.sheet.write(self.row, 0, title)
-        found = []
+        entries = []
         for k, text in enumerate(texts, start=column):
             entry = computed(text, names)
             self._write(self.row, k, entry)
-            found.append(Entry(f"${column_name(k)}${self.row + 1}", entry.value))
-        return found[0], found[1]
+            entries.append(Entry(f"${column_name(k)}${self.row + 1}", entry.value))
+        return entries[0], entries[1]
 
     # Loads
 
     def _loads(self) -> Iterator[tuple[str, Act]]:
-        """Masses, forces and torques in the row, with what they are called."""
+        """Masses, forces and torques in the row, with their names."""
         self._heads("load", *self.sums, ("at x", self.length), ("at y", self.length))
         carriers = self.linkage.carriers()
         for link in self.columns.masses:
@@ -179,9 +179,9 @@ class _Page:
             x, y, moment, px, py = self._picked(name, keys)
             self.at[name] = (px, py)
             yield name, Act(link, name, x, y, moment)
-        for point, given, kx, ky in self.columns.forces:
+        for point, on_link, kx, ky in self.columns.forces:
             x, y = self._picked(f"load on {point}", [kx, ky])
-            yield f"load on {point}", Act(given or carriers[point][0], point, x, y)
+            yield f"load on {point}", Act(on_link or carriers[point][0], point, x, y)
         for link, key in self.columns.torques:
             (moment,) = self._picked(f"torque on {link}", [key], first=3)
             yield f"torque on {link}", Act(link, "", moment=moment)
@@ -210,10 +210,10 @@ class _Page:
 
     def _parts(self, link: str, acts: Iterable[Act]) -> tuple[Entry, Entry, Entry]:
         """The sums of forces and moments of acts on a link."""
-        own = [(act.x, act.y, self._moment(link, act)) for act in acts if act.link == link]
+        terms = [(act.x, act.y, self._moment(link, act)) for act in acts if act.link == link]
         sums = []
         for part in range(3):
-            entries = [each[part] for each in own if each[part] != NO]
+            entries = [each[part] for each in terms if each[part] != NO]
             text = "+".join(f"({entry.text})" for entry in entries) if len(entries) > 1 else ""
             total = Entry(text, sum(entry.value for entry in entries))
             sums.append(total if text else entries[0] if entries else NO)
@@ -223,20 +223,20 @@ class _Page:
         """The matrix, the loads, and the solution."""
         unknowns, followers = reactions.unknowns, reactions.followers
         size = len(unknowns)
-        heads = [*((own.name, "") for own in unknowns), ("loads" if followers else "b", "")]
+        heads = [*((amount.name, "") for amount in unknowns), ("loads" if followers else "b", "")]
         if followers:  # these follow from the unknowns under the loads alone
-            heads += [*((own.name, "") for own in followers), ("b", "")]
+            heads += [*((amount.name, "") for amount in followers), ("b", "")]
         self._heads("W r + b = 0", *heads)
         top = self.row
         acts = [
-            *(own.acts for own in unknowns),
+            *(amount.acts for amount in unknowns),
             [act for _, act in loads],
-            *(own.acts for own in followers),
+            *(amount.acts for amount in followers),
         ]
         # values for programs that do not calculate; the formulas stand on their own
         table = np.zeros((size, len(acts)))
         for k, link in enumerate(self.bodies):
-            sums = [self._parts(link, own) for own in acts]
+            sums = [self._parts(link, amount) for amount in acts]
             for part, word in enumerate(_ROWS):
                 self.sheet.write(self.row, 0, f"{word} on {link}")
                 for column, entries in enumerate(sums):
@@ -253,11 +253,11 @@ class _Page:
         matrix, right = table[:, :size], table[:, size]
         plain = _solution(matrix, right)
         sizes = []
-        for own in followers:
-            which = [unknown.name for unknown in unknowns].index(own.of)
+        for amount in followers:
+            which = [unknown.name for unknown in unknowns].index(amount.of)
             text = self._row_of_solution(which, size, top, size + 1)
             entry = computed(
-                own.size, {**own.names, "t": Entry(text, plain[which])}, self.linkage.angle
+                amount.size, {**amount.names, "t": Entry(text, plain[which])}, self.linkage.angle
             )
             sizes.append(entry)
         total = right + table[:, size + 1 :] @ [entry.value for entry in sizes]
@@ -280,8 +280,8 @@ class _Page:
         for k, unknown in enumerate(unknowns):
             entry = Entry(self._row_of_solution(k, size, top, side), float(solution[k]))
             self._result(unknown.name, unknown.unit, entry)
-        for own, entry in zip(followers, sizes, strict=True):
-            self._result(own.name, own.unit, entry)
+        for amount, entry in zip(followers, sizes, strict=True):
+            self._result(amount.name, amount.unit, entry)
         for reading in reactions.readings:
             names = {
                 letter: self.solved[name] for letter, name in zip("ab", reading.of, strict=False)
@@ -289,7 +289,7 @@ class _Page:
             self._result(
                 reading.name, reading.unit, computed(reading.text, {**names, **reading.names})
             )
-        units = {own.name: own.unit for own in unknowns}
+        units = {amount.name: amount.unit for amount in unknowns}
         for key, name in self.columns.efforts.items():
             self.sheet.write(self.row, 0, f"{name} by virtual work")
             self._pick(FORCES, self.columns.of[key], self._value(key), (self.row, 1))
@@ -327,15 +327,15 @@ class _Page:
         for link in self.bodies:
             self._heads(f"free body {link}", *self.sums)
             begin, sums = self.row, np.zeros(3)
-            for own in acting:
-                if all(act.link != link for act in own.acts):
+            for force in acting:
+                if all(act.link != link for act in force.acts):
                     continue
-                solved = self.solved[own.name]
+                solved = self.solved[force.name]
                 entries = [
                     Entry(f"{solved.text}*({entry.text})", solved.value * entry.value)
-                    for entry in self._parts(link, own.acts)
+                    for entry in self._parts(link, force.acts)
                 ]
-                sums += self._line(own.name, entries)
+                sums += self._line(force.name, entries)
             for name, act in loads:
                 if act.link == link:
                     sums += self._line(name, self._parts(link, [act]))

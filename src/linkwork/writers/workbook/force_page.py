@@ -27,8 +27,8 @@ _SPAN = "((x1-x0)^2+(y1-y0)^2)"
 
 @dataclass
 class ForceColumns:
-    """The keys of what acts: (point, link, x, y) of forces, (link, key) of torques; the names of
-    efforts by key.
+    """The keys of forces (point, link, x, y) and of torques (link, key); the names of efforts by
+    key.
     """
 
     forces: list[tuple[str, str | None, str, str]] = field(default_factory=list)
@@ -98,10 +98,10 @@ class _Page:
         book.names.claim(key, key.replace(" ", "_"))
         book.define(key, FORCES, f"${column_name(self.end)}1")
         book.head(self.sheet, self.end, title, unit)
-        given = {name: book.names.cells[own] for name, own in names.items()}
+        cells = {name: book.names.cells[key_of] for name, key_of in names.items()}
         values = formula.value({**book.values, **{n: book.values[k] for n, k in names.items()}})
         values = book.over_rows(values)
-        shown = book.text(formula, **given)
+        shown = book.text(formula, **cells)
         for k, value in enumerate(values.tolist()):
             if any(True for _ in names_in(formula.node)):
                 book.put(self.sheet, k, self.end, shown, "number", value)
@@ -116,15 +116,15 @@ class _Page:
         """A column of a speed; with several inputs also of that by each alone."""
         self._add(key, title, unit, text, names)
         for which in self.each:
-            own = {name: self._by(used, which) for name, used in names.items()}
+            names_by = {name: self._by(used, which) for name, used in names.items()}
             self._add(
-                partial_key(key, which), f"{title} by {self.book.shown(which)}", "", text, own
+                partial_key(key, which), f"{title} by {self.book.shown(which)}", "", text, names_by
             )
 
     def _by(self, key: str, which: Variable) -> str:
         """The key of a rate by one input alone; other keys stay."""
-        own = partial_key(key, which)
-        return own if own in self.book.values else key
+        partial = partial_key(key, which)
+        return partial if partial in self.book.values else key
 
     @property
     def each(self) -> Sequence[Variable]:
@@ -133,22 +133,22 @@ class _Page:
         return inputs if len(inputs) > 1 else ()
 
     def _rates(self, point: str, order: int, stem: str) -> tuple[dict[str, str], dict[str, str]]:
-        """Names for the rates of a point: those that have cells, and "0" for the others."""
-        found, still = {}, {}
+        """Names for the rates of a point that have cells, and "0" for the rest."""
+        rates, still = {}, {}
         for axis in "xy":
             key = rate_key(coordinate_name(point, axis), order)
             if key in self.book.values:
-                found[f"{stem}{axis}"] = key
+                rates[f"{stem}{axis}"] = key
             else:
                 still[f"{stem}{axis}"] = "0"
-        return found, still
+        return rates, still
 
     def _formula(self, text: str, *points: tuple[str, int, str]) -> tuple[str, dict[str, str]]:
         """A formula of rates of points, zeros written as 0."""
         names: dict[str, str] = {}
         for point, order, stem in points:
-            found, still = self._rates(point, order, stem)
-            names |= found
+            rates, still = self._rates(point, order, stem)
+            names |= rates
             # points at rest have no cells of rates
             for name, zero in still.items():
                 text = text.replace(name, zero)
@@ -166,12 +166,12 @@ class _Page:
             for axis in "xy":
                 text = f"({axis}1-{axis}0)/sqrt({_SPAN})"
                 self._add(f"{link} direction {axis}", f"direction {axis}", "", text, names)
-            own = {f"u{axis}": f"{link} direction {axis}" for axis in "xy"}
+            directions = {f"u{axis}": f"{link} direction {axis}" for axis in "xy"}
             for order, word, per in _SPINS:
                 text = f"(ux*(by-ay)-uy*(bx-ax))/sqrt({_SPAN})"
                 text, rates = self._formula(text, (first, order, "a"), (others[0], order, "b"))
                 add = self._moving if order == 1 else self._add
-                add(f"{link} spin {order}", word, per, text, {**names, **own, **rates})
+                add(f"{link} spin {order}", word, per, text, {**names, **directions, **rates})
         else:
             self._turning_wheel(link)
         self.groups.append((f"Direction of {link}", start, self.end - 1))
@@ -185,9 +185,9 @@ class _Page:
             self._column(f"{link} direction {axis}", f"direction {axis}", "", formula, names)
         for order, word, per in _SPINS:
             key = rate_key(symbol, order)
-            own = {"q": key} if key in self.book.values else {}
+            angle = {"q": key} if key in self.book.values else {}
             add = self._moving if order == 1 else self._add
-            add(f"{link} spin {order}", word, per, "q" if own else "0", own)
+            add(f"{link} spin {order}", word, per, "q" if angle else "0", angle)
 
     def _mass(self, link: str) -> None:
         """Weight and inertia of a link, and their virtual work."""
@@ -238,18 +238,18 @@ class _Page:
         self, k: int, load: Any, parts: tuple[CellFormula, ...], names: Mapping[str, str]
     ) -> None:
         linkage, start = self.cells.linkage, self.end
-        own = dict(names)
+        cells = dict(names)
         if any(node.name == "t" for part in parts for node in names_in(part.node)):
-            own["t"] = self._time()
+            cells["t"] = self._time()
         if load.torque is not None:
             key = self._part(
-                f"load {k}", "torque", f"{linkage.force}·{linkage.length}", parts[0], own, 1
+                f"load {k}", "torque", f"{linkage.force}·{linkage.length}", parts[0], cells, 1
             )
             self.columns.torques.append((load.link, key))
             self.work.append(f"{key}*{load.link} spin 1")
         else:
             keys = [
-                self._part(f"load {k} force {axis}", f"force {axis}", linkage.force, part, own, n)
+                self._part(f"load {k} force {axis}", f"force {axis}", linkage.force, part, cells, n)
                 for n, (axis, part) in enumerate(zip("xy", parts, strict=True), start=1)
             ]
             if load.turns_with is not None:
@@ -303,10 +303,10 @@ class _Page:
         rate = self._add(
             f"{name} rate", "rate", f"{linkage.length}/s", text, {**names, **rates, "l": length}
         )
-        own = {word: f"{name} {word}" for word in ("stiffness", "free", "damping")}
+        constants = {word: f"{name} {word}" for word in ("stiffness", "free", "damping")}
         text = "stiffness*(l-free)+damping*on*r"
-        given = {**own, "l": length, "r": rate, "on": "moving"}
-        tension = self._add(f"{name} tension", "tension", linkage.force, text, given)
+        used = {**constants, "l": length, "r": rate, "on": "moving"}
+        tension = self._add(f"{name} tension", "tension", linkage.force, text, used)
         for point, sign in ((first, ""), (second, "-")):
             keys = [
                 self._add(

@@ -93,9 +93,9 @@ class LoadCells:
     @property
     def linkage(self) -> Linkage:
         """The mechanism."""
-        found = self.book.model.description
-        assert isinstance(found, Linkage)
-        return found
+        description = self.book.model.description
+        assert isinstance(description, Linkage)
+        return description
 
     @property
     def masses(self) -> Iterator[str]:
@@ -107,10 +107,10 @@ class LoadCells:
         """The springs with a stiffness or a damping."""
         return tuple(spring for spring in self.linkage.springs if spring.pulls)
 
-    def number(self, key: str, wanted: str, value: float, unit: str, about: str) -> None:
+    def number(self, key: str, preferred: str, value: float, unit: str, about: str) -> None:
         """A yellow cell with a name."""
         book, style = self.book, self.book.style
-        cell = book.names.claim(key, wanted)
+        cell = book.names.claim(key, preferred)
         self.sheet.write(self.row, 0, cell, style["head_left"])
         self.sheet.write_number(self.row, 1, value, style["input"])
         self.sheet.write(self.row, 2, unit, style["unit_right"])
@@ -138,8 +138,8 @@ def write_loads(book: Book, sheet: Any) -> LoadCells:
         cells.number("force unit", "force_unit", scale, unit, "force of a unit of inertia")
         gravity = linkage.gravity
         size = 0.0 if gravity is None else gravity.acceleration(numbers, linkage.length)
-        given = None if gravity is None else gravity.angle
-        angle = _DOWN if given is None else numbers(given) * linkage.angle.radians
+        stated = None if gravity is None else gravity.angle
+        angle = _DOWN if stated is None else numbers(stated) * linkage.angle.radians
         for axis, part in (("x", math.cos(angle)), ("y", math.sin(angle))):
             # cos(-90°) is not zero in floating point
             part = 0.0 if abs(part) < 1e-16 else part
@@ -177,7 +177,7 @@ def _write_masses(cells: LoadCells) -> None:
         if mass.shape is not None:
             continue  # a rod follows its length
         for axis, part in zip("xy", mass.center or (0.0, 0.0), strict=True):
-            about = f"centre of mass of {link}, in its own frame"
+            about = f"centre of mass of {link}, in the frame of the link"
             key = f"center {link} {axis}"
             cells.number(key, f"center_{link}_{axis}", numbers(part), length, about)
         unit, about = f"{mass_unit}·{length}²", f"moment of inertia of {link} about its centre"
@@ -189,11 +189,11 @@ def _write_load(cells: LoadCells, k: int, load: Load) -> None:
     linkage = cells.linkage
     unit = linkage.force if load.torque is None else f"{linkage.force}·{linkage.length}"
     parts, names = [], {}
-    for (word, number), own in zip(_components(load), "xy", strict=False):
+    for (word, number), axis in zip(_components(load), "xy", strict=False):
         formula = number if isinstance(number, str) else None
         if formula is None:
             key = f"load {k} {word}"
-            name = f"load{k}_{own}" if load.torque is None else f"load{k}_torque"
+            name = f"load{k}_{axis}" if load.torque is None else f"load{k}_torque"
             cells.number(key, name, linkage.numbers(number), unit, load.label)
             parts.append(CellFormula(parse("q")))
             names[f"q {len(parts)}"] = key

@@ -43,7 +43,7 @@ class NewtonColumns:
 
 def planned_newton(book: Book) -> NewtonColumns:
     """Number the columns and name every iterate: ``theta14_0``, ``theta14_1``, …"""
-    found, place = NewtonColumns(), 1
+    columns, place = NewtonColumns(), 1
     count = book.iterations.count
     for b, block in enumerate(book.closure.blocks):
         if not block.rows:
@@ -51,18 +51,18 @@ def planned_newton(book: Book) -> NewtonColumns:
         n = len(block.unknowns)
         for k in range(count + 1):
             if k:
-                found.start[b, k - 1] = place
+                columns.start[b, k - 1] = place
                 place += 2 * n + n * n
             for i in block.unknowns:
-                found.x[k, i] = place
+                columns.x[k, i] = place
                 variable = book.model.equations.unknowns[i]
                 key = f"iterate {k} {variable.symbol}"
                 book.names.claim(key, f"{variable.shown}_{k}")
                 book.define(key, NEWTON, f"${column_name(place)}1")
                 place += 1
-        found.last |= {i: found.x[count, i] for i in block.unknowns}
-        found.last_jacobian[b] = found.start[b, count - 1] + n
-    found.end = place
+        columns.last |= {i: columns.x[count, i] for i in block.unknowns}
+        columns.last_jacobian[b] = columns.start[b, count - 1] + n
+    columns.end = place
     if place + 2 > _MOST_COLUMNS:
         raise InputError(
             f"{place + 2} columns of iterations are too many for a workbook (at most "
@@ -70,7 +70,7 @@ def planned_newton(book: Book) -> NewtonColumns:
         )
     book.names.claim("converged", "converged")
     book.define("converged", NEWTON, f"${column_name(place + 1)}1")
-    return found
+    return columns
 
 
 def write_newton(
@@ -184,9 +184,9 @@ class _Block:
 
     def _cell(self, k: int, column: int, formula: str, look: str, value: float) -> None:
         """Write a formula of one row; its value is unknown where the cells do not solve."""
-        own = apart(formula, FIRST + k)
+        text = apart(formula, FIRST + k)
         shown = cached(value) if self.book.iterations.live[k] else ""
-        self.sheet.write_formula(FIRST + k, column, own, self.book.style[look], shown)
+        self.sheet.write_formula(FIRST + k, column, text, self.book.style[look], shown)
 
     def _iteration(self, k: int) -> None:
         book, block, n = self.book, self.block, len(self.block.unknowns)
@@ -198,8 +198,8 @@ class _Block:
             for i, v in enumerate(book.model.equations.unknowns)
             if i in self.columns.last
         }
-        own = {v.symbol: book.names.cells[f"iterate {k} {v.symbol}"] for v in self._variables}
-        cells |= own
+        iterate = {v.symbol: book.names.cells[f"iterate {k} {v.symbol}"] for v in self._variables}
+        cells |= iterate
         here = {
             v.symbol: book.iterations.values[k][:, i]
             for i, v in zip(block.unknowns, self._variables, strict=True)
@@ -223,13 +223,13 @@ class _Block:
         values: dict[str, Any],
         look: str,
     ) -> None:
-        found = self.book.over_rows(formula.value(values)).tolist()
+        results = self.book.over_rows(formula.value(values)).tolist()
         if not any(True for _ in names_in(formula.node)):
-            for k, value in enumerate(found):
+            for k, value in enumerate(results):
                 self.sheet.write_number(FIRST + k, column, value, self.book.style[look])
             return
         shown = self.book.text(formula, **cells)
-        for k, value in enumerate(found):
+        for k, value in enumerate(results):
             self._cell(k, column, shown, look, value)
 
     def _corrections(self, k: int, place: int) -> None:

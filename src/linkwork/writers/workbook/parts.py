@@ -164,7 +164,7 @@ def write_belt(belt: Belt, reactions: Reactions) -> None:
 
 @write_drive.register
 def drive_cylinder(cylinder: Cylinder, reactions: Reactions, effort: str) -> None:
-    """The force that pushes the ends apart, and what its pins exert on the cylinder."""
+    """The force that pushes the ends apart, and the forces of its pins on the cylinder."""
     along = reactions.along[cylinder.name]
     start, end = cylinder.between
     acts = (
@@ -178,9 +178,9 @@ def drive_cylinder(cylinder: Cylinder, reactions: Reactions, effort: str) -> Non
         if len(names) == 2 and names[-1] != cylinder.name:
             continue
         stem = reactions.stem(point, "force", cylinder.name)
-        for axis, own in zip("xy", along, strict=True):
+        for axis, component in zip("xy", along, strict=True):
             reading = Reading(
-                f"{stem}.{axis}", reactions.force, f"{sign}a*w", (effort,), {"w": own}
+                f"{stem}.{axis}", reactions.force, f"{sign}a*w", (effort,), {"w": component}
             )
             reactions.readings.append(reading)
 
@@ -277,8 +277,8 @@ def write_rolling(rolling: Rolling, reactions: Reactions) -> None:
 @write_drive.register
 def drive_rolling(rolling: Rolling, reactions: Reactions, effort: str) -> None:
     """The force on the wheel's centre along the line."""
-    along, own = reactions.along[rolling.name], reactions.joined[rolling.center][0]
-    reactions.pair(effort, own, rolling.on, rolling.center, along)
+    along, body = reactions.along[rolling.name], reactions.joined[rolling.center][0]
+    reactions.pair(effort, body, rolling.on, rolling.center, along)
 
 
 # ----------------------------------------------------------------------
@@ -307,15 +307,15 @@ def drive_slider(slider: Slider, reactions: Reactions, effort: str) -> None:
 @write_reactions.register
 def write_slot(slot: Slot, reactions: Reactions) -> None:
     """The normal force on the pin."""
-    own, across = reactions.joined[slot.point][0], left_of(reactions.along[slot.name])
-    reactions.pair(f"{slot.name}.normal", own, slot.on, slot.point, across)
+    body, across = reactions.joined[slot.point][0], left_of(reactions.along[slot.name])
+    reactions.pair(f"{slot.name}.normal", body, slot.on, slot.point, across)
 
 
 @write_drive.register
 def drive_slot(slot: Slot, reactions: Reactions, effort: str) -> None:
     """The force on the pin along the slot."""
-    own, along = reactions.joined[slot.point][0], reactions.along[slot.name]
-    reactions.pair(effort, own, slot.on, slot.point, along)
+    body, along = reactions.joined[slot.point][0], reactions.along[slot.name]
+    reactions.pair(effort, body, slot.on, slot.point, along)
 
 
 # ----------------------------------------------------------------------
@@ -344,7 +344,7 @@ def join_links(reactions: Reactions) -> None:
     for which in linkage.inputs:
         (kind, name), effort = which.drives, effort_name(which.column)
         if kind in ("slider", "cylinder"):
-            part = next(own for own in linkage.parts if own.drive and own.label == name)
+            part = next(driven for driven in linkage.parts if driven.drive and driven.label == name)
             write_drive(part, reactions, effort)
             continue
         on, against = name, which.relative_to or GROUND

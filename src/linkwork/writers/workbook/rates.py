@@ -149,17 +149,17 @@ class _VelocityPagePage:
     def _solved(self, b: int, order: int) -> AnyArray:
         """The values of a block's rates, (R, n); those of Linkwork where cells do not solve."""
         book, block = self.book, self.book.closure.blocks[b]
-        found = np.full((book.count, len(block.unknowns)), np.nan)
+        rates = np.full((book.count, len(block.unknowns)), np.nan)
         for c, k in enumerate(block.unknowns):
             series = book.motion.unknowns.get(book.model.equations.unknowns[k].name)
             if series is not None:
-                own = series.first if order == 1 else series.second
-                found[:, c] = own[book.iterations.rows] * book.speed**order
+                derivative = series.first if order == 1 else series.second
+                rates[:, c] = derivative[book.iterations.rows] * book.speed**order
         live = book.iterations.live
         if book.rates.sides[b] and live.any():
             sides = [pair[order - 1].value(book.values) for pair in book.rates.sides[b]]
-            found[live] = rates_of_block(book, b, sides)[live]
-        return found
+            rates[live] = rates_of_block(book, b, sides)[live]
+        return rates
 
     def _rate(self, b: int, order: int, c: int, row: int) -> str:
         """The formula of one rate in one row, without equals sign."""
@@ -167,23 +167,23 @@ class _VelocityPagePage:
         done = book.iterations
         variable = book.model.equations.unknowns[block.unknowns[c]]
         place = FIRST + row + 1
-        own = "NA()"
+        solved_rate = "NA()"
         if done.found[row] and variable.name in book.motion.unknowns:
             source = book.linkwork_columns[f"{variable.name}.d{order}"]
             power = "" if order == 1 else "^2"
             speed = book.names.cells[rate_key(book.leading.symbol, 1)]
-            own = (
+            solved_rate = (
                 f"{LINKWORK}!{column_name(source)}{int(done.rows[row]) + FIRST + 1}*{speed}{power}"
             )
         if not book.rates.sides[b]:
-            return f'IF(as_solved="yes",{own},NA())'
+            return f'IF(as_solved="yes",{solved_rate},NA())'
         side = self.columns.side[b, order]
         solved = correction(
             self.newton.last_jacobian[b], side, len(block.rows), c, place, f"{NEWTON}!"
         )
         if done.live[row]:
             return solved
-        return f'IF(as_solved="yes",{own},{solved})'
+        return f'IF(as_solved="yes",{solved_rate},{solved})'
 
     def _others(self, order: int) -> None:
         """The rates of links, points and outputs."""
@@ -208,10 +208,10 @@ def rates_of_block(book: Book, b: int, sides: Sequence[Any]) -> AnyArray:
     slopes = [[book.over_rows(part.value(before)) for part in row.slopes] for row in block.rows]
     jacobian = np.moveaxis(np.array(slopes), 2, 0)
     right = np.stack([book.over_rows(side) for side in sides], axis=1)
-    found = np.full((book.count, len(block.unknowns)), np.nan)
+    rates = np.full((book.count, len(block.unknowns)), np.nan)
     if live.any():
-        found[live], _ = corrections(jacobian[live], right[live])
-    return found
+        rates[live], _ = corrections(jacobian[live], right[live])
+    return rates
 
 
 # ----------------------------------------------------------------------
@@ -244,7 +244,7 @@ class _PartialPagePage:
         book, sheet = self.book, self.sheet
         inputs = book.model.equations.inputs
         book.title(sheet, "rates by each input alone")
-        note = "As on the sheet Velocities, with a speed of 1 of one input while the others rest."
+        note = "As on the sheet Velocities, with a speed of 1 of one input while all others rest."
         sheet.write(1, 0, note, book.style["note"])
         book.row_numbers(sheet)
         for variable in inputs:
@@ -261,7 +261,7 @@ class _PartialPagePage:
     def _rates(self, which: Variable) -> None:
         """The rates of unknowns, links and points by one input."""
         book = self.book
-        # by what the formulas of velocities call the rates by all inputs
+        # by the names of rates by all inputs in the formulas of velocities
         cells: dict[str, str] = {}
         values: dict[str, Any] = {}
         shown, begin = book.shown(which), self.end
@@ -276,7 +276,7 @@ class _PartialPagePage:
                 book.head(self.sheet, self.end, row.name, "")
                 self._column(formula, cells, values)
             self._group(f"Right sides by {shown}", first)
-            found = rates_of_block(
+            rates = rates_of_block(
                 book, b, [formula.value({**book.values, **values}) for formula in formulas]
             )
             begin = self.end
@@ -290,7 +290,7 @@ class _PartialPagePage:
                     for row in range(book.count)
                 ]  # fmt: skip
                 self._named(
-                    variable.symbol, book.shown(variable), which, cells, values, found[:, c], texts
+                    variable.symbol, book.shown(variable), which, cells, values, rates[:, c], texts
                 )
             self._group(f"Rates by {shown}", begin)
         begin = self.end
@@ -327,8 +327,8 @@ class _PartialPagePage:
 
         Without texts it is constant.
         """
-        book, own = self.book, rate_key(quantity, 1)
-        key = partial_key(own, which)
+        book, rate = self.book, rate_key(quantity, 1)
+        key = partial_key(rate, which)
         name = book.names.claim(key, f"{book.names.cells[quantity].rstrip('_')}.by.{which.shown}")
         book.define(key, PARTIALS, f"${column_name(self.end)}1")
         book.head(self.sheet, self.end, shown, "")
@@ -337,7 +337,7 @@ class _PartialPagePage:
                 book.put(self.sheet, row, self.end, texts[row], "number", value)
             else:
                 self.sheet.write_number(FIRST + row, self.end, value, book.style["number"])
-        cells[own], values[own], book.values[key] = name, column, column
+        cells[rate], values[rate], book.values[key] = name, column, column
         self.end += 1
 
     def _group(self, title: str, first: int) -> None:

@@ -47,14 +47,14 @@ class Reactions:
             for point, names in self.carriers.items()
         }
         for point, links in self.joined.items():
-            # loads on a pin act on its first link, so that this one needs no unknown of its own
+            # loads on a pin act on its first link, so that this one needs no further unknown
             for other in links[1:]:
                 stem = self.stem(point, "force", other)
                 self.pair(f"{stem}.x", other, links[0], point, (ONE, NO))
                 self.pair(f"{stem}.y", other, links[0], point, (NO, ONE))
 
     def stem(self, point: str, what: str, link: str) -> str:
-        """The name of a reaction on a link at a point that others may share."""
+        """The name of a reaction on a link at a point that other links may share."""
         return f"{point}.{what}" if len(self.carriers[point]) < 3 else f"{point}.{what}.{link}"
 
     def pair(

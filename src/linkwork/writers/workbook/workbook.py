@@ -124,7 +124,7 @@ def workbook_of(
 def _write_sheets(
     book: Book, sheets: dict[str, Any], version: str, progress: Callable[[float], None]
 ) -> None:
-    """Write all sheets, those that others refer to first."""
+    """Write all sheets; sheets to which other ones refer come first."""
     write_dimensions(book, sheets[DIMENSIONS])
     newton, columns = planned_newton(book), planned_cycle(book)
     velocities = planned_velocities(book)

@@ -21,7 +21,7 @@ def template_text(name: str) -> str:
     Raises
     ------
     InputError
-        If there is none of this name.
+        If no template has this name.
     """
     known = template_names()
     if name not in known:
