@@ -293,8 +293,8 @@ def _widget_class() -> Any:
                 )
             return name
 
-        @traitlets.validate("row")  # type: ignore[untyped-decorator]
-        def _known_row(self, proposal: Any) -> int:  # noqa: V105
+        @traitlets.validate("row")  # type: ignore[untyped-decorator]  # noqa: V105
+        def _known_row(self, proposal: Any) -> int:
             row: int = proposal["value"]
             if row not in self._rows[self.configuration]:
                 rows = self._rows[self.configuration]
