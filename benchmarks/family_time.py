@@ -73,7 +73,7 @@ def _loaded_slider_cranks(designs: int) -> Family:
         },
         gravity=lw.Gravity(),
         loads=[lw.Load(point="B", force=(-100, 0))],
-        inputs=[lw.Input(link="crank", start=0, stop=360, step=10, speed="300 rpm")],
+        inputs=[lw.Input(link="crank", from_=0, to=360, step=10, speed="300 rpm")],
     )
     rng = np.random.default_rng(1)
     sizes = {"O2 A": rng.normal(40, 0.5, designs), "B A": rng.normal(120, 1, designs)}
@@ -84,7 +84,7 @@ def rapier_family(designs: int, rows: int) -> Family:
     """Rapier drives with every length within half a per cent, over a full turn."""
     drive = lw.example("rapier-drive")
     (own,) = drive.description.inputs
-    turn = replace(own, start=0.0, stop=360.0 - 360.0 / rows, step=360.0 / rows)
+    turn = replace(own, from_=0.0, to=360.0 - 360.0 / rows, step=360.0 / rows)
     rng = np.random.default_rng(1)
     return drive.changed(inputs=(turn,)).family(
         {

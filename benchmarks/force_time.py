@@ -25,7 +25,7 @@ def _rows(repeats: int) -> bool:
     bar_linkage = lw.example("four-bar").changed(
         masses={k: lw.Mass(mass=1.0, shape="rod") for k in ("crank", "coupler", "rocker")},
         gravity=lw.Gravity(),
-        inputs=lw.Input(link="crank", start=0, stop=360, step=1, speed="60 rpm"),
+        inputs=lw.Input(link="crank", from_=0, to=360, step=1, speed="60 rpm"),
     )
     for _ in range(10):  # from then on with kernels
         bar_linkage.sweep()

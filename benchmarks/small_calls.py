@@ -62,7 +62,7 @@ def _few_designs(mechanism: lw.Mechanism, count: int) -> Family:
 
 def _one_turn(mechanism: lw.Mechanism) -> lw.Mechanism:
     (own,) = mechanism.description.inputs
-    return mechanism.changed(inputs=(replace(own, start=0.0, stop=360.0, step=6.0),))
+    return mechanism.changed(inputs=(replace(own, from_=0.0, to=360.0, step=6.0),))
 
 
 def _cold_circuits(repeats: int) -> bool:

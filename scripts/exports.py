@@ -40,7 +40,7 @@ def _compared(name: str, suffix: str, folder: Path) -> str:
     mechanism, file = lw.example(name), folder / f"solver{suffix}"
     # its parser is slow; of several inputs no range can be replaced
     few = suffix == ".st" and len(mechanism.description.inputs) == 1
-    motion = mechanism.sweep(start=60, stop=62, step=1) if few else mechanism.sweep()
+    motion = mechanism.sweep(from_=60, to=62, step=1) if few else mechanism.sweep()
     try:
         mechanism.write(file, motion=motion)
     except InputError as error:

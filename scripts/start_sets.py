@@ -96,7 +96,7 @@ def driven(pins: Edges, rng: np.random.Generator) -> lw.Mechanism:
             )
             for link in range(links)
         },
-        inputs=lw.Input(link="b1", start=0, stop=360, step=10),
+        inputs=lw.Input(link="b1", from_=0, to=360, step=10),
     )
 
 

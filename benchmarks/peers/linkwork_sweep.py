@@ -96,9 +96,7 @@ def mechanism_of(
         dimensions=dimensions,
         loops=loops,
         guess={"u": first, **dict(zip([*unknowns, *slides], map(float, start), strict=True))},
-        inputs=lw.Input(
-            variable="u", start=first, stop=last, step=(last - first) / (work.rows - 1)
-        ),
+        inputs=lw.Input(variable="u", from_=first, to=last, step=(last - first) / (work.rows - 1)),
         points={"T": _written(point)},
     )
 

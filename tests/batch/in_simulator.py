@@ -32,17 +32,17 @@ def five_bar() -> lw.Mechanism:
         dimensions={"r": 1.0, "l": 2.0, "g": 1.5},
         guess={"a": 1.1, "b": 0.3, "p": 0.7, "q": 2.0},
         inputs=(
-            lw.Input(variable="a", start=1.0, stop=1.2, step=0.1),
-            lw.Input(variable="b", start=0.1, stop=0.3, step=0.1),
+            lw.Input(variable="a", from_=1.0, to=1.2, step=0.1),
+            lw.Input(variable="b", from_=0.1, to=0.3, step=0.1),
         ),
     )
 
 
 def families() -> dict[str, tuple[Family, bool]]:
     """By name, with whether they are proved."""
-    four_bar = lw.example("four-bar").driven_by(link="crank", start=0, stop=360, step=30)
-    rocking = lw.example("four-bar").driven_by(link="crank", start=0, stop=360, step=60)
-    falling = lw.example("jansen-leg").driven_by(link="crank", start=90, stop=-30, step=-30)
+    four_bar = lw.example("four-bar").driven_by(link="crank", from_=0, to=360, step=30)
+    rocking = lw.example("four-bar").driven_by(link="crank", from_=0, to=360, step=60)
+    falling = lw.example("jansen-leg").driven_by(link="crank", from_=90, to=-30, step=-30)
     lengths = np.array([118.0, 300.0, 121.0, 123.0, 116.0])  # the second one cannot be built
     return {
         "four-bar, proved": (four_bar.family({"A B": lengths}), True),

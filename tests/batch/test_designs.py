@@ -233,7 +233,7 @@ def test_textbook_loops_and_plain_equations_vary_too() -> None:
         dimensions={"k": 2.0, "m": "ln(k)"},
         equations={"f": "x^3 - k*x + m = t"},
         guess={"x": 1.0, "t": 0.0},
-        inputs=lw.Input(variable="t", start=0, stop=1, step=0.1),
+        inputs=lw.Input(variable="t", from_=0, to=1, step=0.1),
     )
     found = designs_of(plain, {"k": [1.0, 2.0, -1.0], "x": [0.5, 1.0, 1.0]})
     assert [bool(p) for p in found.problem] == [False, False, True]

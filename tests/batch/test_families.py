@@ -188,7 +188,7 @@ def test_names_are_spelled_as_users_do_and_unknown_ones_are_told(motion: FamilyM
         loops={"1": "r*e^(i*theta) = x + i*y"},
         dimensions={"r": 2.0},
         guess={"theta": 30, "x": 1.0, "y": 1.0},
-        inputs=lw.Input(variable="theta", start=0, stop=90, step=30),
+        inputs=lw.Input(variable="theta", from_=0, to=90, step=30),
     )
     turned = turning.family({"r": [1.0, 2.0]}).sweep()
     np.testing.assert_array_equal(turned["θ"], [[0.0, 30.0, 60.0, 90.0]] * 2)
@@ -221,7 +221,7 @@ def test_outputs_and_angles_of_designs_follow_their_own_numbers() -> None:
         loops={"1": "r*e^(i*t) = x + i*y"},
         dimensions={"r": 2.0},
         guess={"t": 30, "x": 1.0, "y": 1.0},
-        inputs=lw.Input(variable="t", start=0, stop=360, step=30),
+        inputs=lw.Input(variable="t", from_=0, to=360, step=30),
         outputs={"double": "2*r + x"},
     )
     radii = np.array([1.0, 2.0, 5.0])

@@ -63,11 +63,11 @@ def by_itself(family: Family, k: int, certify: bool = True) -> Motion:
         number = base.description.numbers
         inputs = []
         for which in base.description.inputs:
-            start, stop, step = which.start, which.stop, which.step
+            start, stop, step = which.from_, which.to, which.step
             assert start is not None
             assert stop is not None
             assert step is not None
-            inputs.append(replace(which, start=number(start), stop=number(stop), step=number(step)))
+            inputs.append(replace(which, from_=number(start), to=number(stop), step=number(step)))
         description = replace(model.description, inputs=tuple(inputs))
         model = Model(description, model.equations, model.compiled, model.skeleton, model.branch)
     return sweep(model, certify=certify)
@@ -234,7 +234,7 @@ def test_rows_right_in_front_of_dead_points_are_found() -> None:
 
 
 def test_change_points_stop_designs_as_they_do_by_themselves() -> None:
-    mechanism = lw.example("parallelogram").driven_by(link="crank", start=5, stop=355, step=5)
+    mechanism = lw.example("parallelogram").driven_by(link="crank", from_=5, to=355, step=5)
     length = described_as(Linkage, mechanism).lengths["O2 A"]
     family = mechanism.family({"O2 A": length * np.array([1.0, 1.0001, 0.99])})
     motion = family.sweep()
@@ -245,7 +245,7 @@ def test_change_points_stop_designs_as_they_do_by_themselves() -> None:
 def test_descending_tables_and_starts_outside_the_table() -> None:
     four_bar = lw.example("four-bar")
     for start, stop, step in ((200.0, 100.0, -5.0), (400.0, 700.0, 7.0), (-700.0, -400.0, 9.0)):
-        driven = four_bar.driven_by(link="crank", start=start, stop=stop, step=step)
+        driven = four_bar.driven_by(link="crank", from_=start, to=stop, step=step)
         family = driven.family({"A B": [119.0, 120.0, 121.0]})
         motion = family.sweep()
         assert_agrees(family, motion)
@@ -261,8 +261,8 @@ def two_inputs(begin: float, there: float, slow: float = 1.0) -> lw.Mechanism:
         dimensions={"r": 1.0, "l": 2.0, "g": 1.5},
         guess={"a": begin, "b": there, "p": 0.7, "q": 2.0},
         inputs=(
-            lw.Input(variable="a", start=begin, stop=begin + 0.2 / slow, step=0.01 / slow),
-            lw.Input(variable="b", start=there, stop=there + 0.2, step=0.01),
+            lw.Input(variable="a", from_=begin, to=begin + 0.2 / slow, step=0.01 / slow),
+            lw.Input(variable="b", from_=there, to=there + 0.2, step=0.01),
         ),
     )
 
@@ -312,8 +312,8 @@ def test_all_designs_keep_to_the_table_of_the_family() -> None:
     mechanism = two_inputs(1.0, 0.5).changed(
         dimensions={"r": 1.0, "l": 2.0, "g": 1.5, "top": 1.2},
         inputs=(
-            lw.Input(variable="a", start=1.0, stop="top", step=0.01),
-            lw.Input(variable="b", start=0.6, stop=0.6),
+            lw.Input(variable="a", from_=1.0, to="top", step=0.01),
+            lw.Input(variable="b", from_=0.6, to=0.6),
         ),
     )  # whose guess lies beside the table
     family = mechanism.family({"top": [1.2, 1.3, 1.1]})
@@ -343,8 +343,8 @@ def test_starts_that_cannot_be_led_to_the_path_go_alone() -> None:
         dimensions={"r": 1.0, "l": 1.2, "g": 1.5},
         guess={"a": 1.0, "b": 0.5, "p": 0.7, "q": 2.0},
         inputs=(
-            lw.Input(variable="a", start=3.0, stop=3.3, step=0.1),
-            lw.Input(variable="b", start=0.0, stop=0.0),
+            lw.Input(variable="a", from_=3.0, to=3.3, step=0.1),
+            lw.Input(variable="b", from_=0.0, to=0.0),
         ),
     )
     family = mechanism.family({"l": [1.2, 2.6, 1.3]})
@@ -369,13 +369,13 @@ def test_starts_at_dead_points_and_change_points() -> None:
         loops={"1": "r*e^(i*a) + l*e^(i*p) = l*c + r*e^(i*q)"},
         dimensions={"r": 1.0, "l": 3.0, "c": 1.0},
         guess={"a": 0, "p": 0, "q": 0},
-        inputs=lw.Input(variable="a", start=0, stop=90, step=30),
+        inputs=lw.Input(variable="a", from_=0, to=90, step=30),
     )
     dead = lw.loops(
         loops={"1": "r*e^(i*t) + l*e^(i*p) = x"},
         dimensions={"r": 1.0, "l": 3.0},
         guess={"t": 0, "p": 0, "x": 4.0},
-        inputs=lw.Input(variable="x", start=4.0, stop=3.0, step=-0.25),
+        inputs=lw.Input(variable="x", from_=4.0, to=3.0, step=-0.25),
     )
     for mechanism in (flat, dead):
         for certify in (True, False):
@@ -391,7 +391,7 @@ def test_steps_that_are_lost_in_rounding_end_the_march() -> None:
         loops={"yoke": "y + i*z = x + i*r"},
         dimensions={"r": 1.0},
         guess={"y": 1e17, "z": 1.0, "x": 1e17},
-        inputs=lw.Input(variable="x", start=1e17, stop=1e17 + 1000, step=100),
+        inputs=lw.Input(variable="x", from_=1e17, to=1e17 + 1000, step=100),
     )
     motion = far.family({"r": [1.0, 2.0]}).sweep()
     assert motion.rows.alone.all()

@@ -77,7 +77,7 @@ def test_rates_that_do_not_exist_are_refused_before_anything_is_computed(
         raise AssertionError("computed")
 
     monkeypatch.setattr("linkwork.families.values.design_rates", refuse)
-    slow = lw.example("four-bar").driven_by(link="crank", start=0, stop=90, step=45)
+    slow = lw.example("four-bar").driven_by(link="crank", from_=0, to=90, step=45)
     told = '"rocker.velocity" needs the speed of the input: set speed in [input]'
     fresh = slow.family({"A B": [119.0, 121.0]})
     for mechanism in (slow.sweep(), fresh.sweep()):
@@ -100,7 +100,7 @@ def test_every_design_has_its_own_speed() -> None:
         loops={"1": "r*e^(i*t) = x + i*y"},
         dimensions={"r": 2.0, "n": 60.0, "top": "2*n"},
         guess={"t": 30, "x": 1.0, "y": 1.0},
-        inputs=lw.Input(variable="t", start=0, stop=360, step=30, speed="top/4 + 30 rpm"),
+        inputs=lw.Input(variable="t", from_=0, to=360, step=30, speed="top/4 + 30 rpm"),
     )
     speeds = np.array([60.0, math.nan, 120.0])
     motion = mechanism.family({"n": speeds}).sweep()
@@ -219,7 +219,7 @@ def test_random_four_bars_move_between_the_dead_points_of_their_triangles() -> N
 def test_limits_are_those_met_on_the_way_to_the_rows(
     start: float, stop: float, step: float, lower: float, upper: float
 ) -> None:
-    driven = lw.example("four-bar").driven_by(link="crank", start=start, stop=stop, step=step)
+    driven = lw.example("four-bar").driven_by(link="crank", from_=start, to=stop, step=step)
     limits = driven.family({"O2 A": [110.0, 40.0]}).sweep().limits
     assert limits.lower[0] == pytest.approx(lower, abs=1e-9)
     assert limits.upper[0] == pytest.approx(upper, abs=1e-9)
@@ -228,7 +228,7 @@ def test_limits_are_those_met_on_the_way_to_the_rows(
 
 
 def test_change_points_and_lost_ends_have_their_kind() -> None:
-    mechanism = lw.example("parallelogram").driven_by(link="crank", start=5, stop=355, step=5)
+    mechanism = lw.example("parallelogram").driven_by(link="crank", from_=5, to=355, step=5)
     length = described_as(Linkage, mechanism).lengths["O2 A"]
     motion = mechanism.family({"O2 A": length * np.array([1.0, 0.99])}).sweep()
     limits = motion.limits
@@ -238,7 +238,7 @@ def test_change_points_and_lost_ends_have_their_kind() -> None:
         loops={"1": "r*e^(i*t) + l*e^(i*p) = x"},
         dimensions={"r": 1.0, "l": 3.0},
         guess={"t": 0, "p": 0, "x": 4.0},
-        inputs=lw.Input(variable="x", start=4.0, stop=3.0, step=-0.25),
+        inputs=lw.Input(variable="x", from_=4.0, to=3.0, step=-0.25),
     )
     lost = singular.family({"l": [3.0, 3.001]}).sweep().limits
     assert lost.lower_kind[0] == "limit"

@@ -65,7 +65,7 @@ def _near_crossing(apart: float, step: float) -> lw.Mechanism:
         points={"A": (0, 0), "B": (0, 1), "C": (3, 2), "D": (frame, 0)},
         links={"a": ["A", "B"], "b": ["B", "C"], "c": ["C", "D"], "ground": ["A", "D"]},
         lengths={"A B": 1, "B C": 2.5, "C D": 3},
-        inputs=lw.Input(link="a", start=step / 2, stop=360 + step / 2, step=step),
+        inputs=lw.Input(link="a", from_=step / 2, to=360 + step / 2, step=step),
     )
 
 

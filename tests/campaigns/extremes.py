@@ -89,7 +89,7 @@ def _wrong(case: _Case, counts: Counter[str]) -> list[str]:
             if not abs(family.value(f"{word}({name})")[1] - value) <= size:
                 counts["numbers of designs with two extremes between rows"] += 1
     fine = mechanism.driven_by(
-        link="crank", start=start, stop=stop, step=step / _FINER, speed="7 rad/s"
+        link="crank", from_=start, to=stop, step=step / _FINER, speed="7 rad/s"
     ).sweep(certify=False)
     for name in _LOADED:
         for word in ("max", "min"):
@@ -187,4 +187,4 @@ def _slider_crank(rng: np.random.Generator, table: tuple[float, float, float]) -
 
 def _input(table: tuple[float, float, float]) -> lw.Input:
     start, stop, step = table
-    return lw.Input(link="crank", start=start, stop=stop, step=step, speed="7 rad/s")
+    return lw.Input(link="crank", from_=start, to=stop, step=step, speed="7 rad/s")

@@ -42,7 +42,7 @@ def _judge(first: int, count: int, counts: Counter[str], false: list[str]) -> No
         loops={"1": "b*e^(i*t) + c*e^(i*p) = a + d*e^(i*q)"},
         dimensions={"a": 2.0, "b": 1.0, "c": 2.5, "d": 2.5},
         guess={"t": 0.0, "p": 60.0, "q": 100.0},
-        inputs=lw.Input(variable="t", start=0, stop=360, step=_STEP),
+        inputs=lw.Input(variable="t", from_=0, to=360, step=_STEP),
     )
     family = mechanism.family({
         "a": a, "b": b, "c": c, "d": d,

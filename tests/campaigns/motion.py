@@ -174,7 +174,7 @@ def _finer(case: Case, step: int, motion: lw.Motion) -> Complex:
     k = int(certified[len(certified) // 3])
     guess = {name: float(motion[name][k]) for name in motion.unknowns}
     other = case.mechanism.changed(guess=guess | {"t": float(motion["t"][k])})
-    fine = other.sweep(start=-360, stop=720, step=fine_step)
+    fine = other.sweep(from_=-360, to=720, step=fine_step)
     joints = _joints(case, fine, fine.asked)
     joints[~fine.certified[fine.asked]] = np.nan
     every, turn = round(step / fine_step), round(360 / fine_step)
@@ -281,7 +281,7 @@ def _built(
         loops=loops,
         dimensions=dimensions,
         guess=guess,
-        inputs=lw.Input(variable="t", start=0, stop=360, step=step),
+        inputs=lw.Input(variable="t", from_=0, to=360, step=step),
     )
     dense = exact(np.linspace(0, 2 * math.pi, 7201), signs)
     return Case(mechanism, joints, exact, signs, bool(np.isfinite(dense).all()))
@@ -433,7 +433,7 @@ def _triad(rng: np.random.Generator, near: float | None, step: int) -> Case | No
         dimensions=numbers,
         guess={"t": math.degrees(theta)}
         | dict(zip(names, np.degrees(angle).tolist(), strict=True)),
-        inputs=lw.Input(variable="t", start=0, stop=360, step=step),
+        inputs=lw.Input(variable="t", from_=0, to=360, step=step),
     )
 
     def joints(values: dict[str, Array], theta: Array) -> Complex:

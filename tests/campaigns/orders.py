@@ -309,7 +309,7 @@ def _near_start(mechanism: lw.Mechanism) -> lw.Mechanism:
         length = model.equations.inputs[k].kind == "length"
         step = 0.02 * model.equations.length_scale if length else 0.15 / model.units.angle.radians
         inputs.append(
-            replace(which, start=here - step, stop=here + step, step=step, law=None, begin=None)
+            replace(which, from_=here - step, to=here + step, step=step, law=None, begin=None)
         )
     return mechanism.changed(inputs=tuple(inputs))
 

@@ -152,7 +152,7 @@ def _block(rng: np.random.Generator) -> Case:
         sliders=[
             lw.Slider(name="d", link="block", points=("B",), on="ground", line=("S", "T"))
         ],
-        inputs=lw.Input(slider="d", start=-50, stop=50, step=1), stops=stops,
+        inputs=lw.Input(slider="d", from_=-50, to=50, step=1), stops=stops,
         loads=[lw.Load(point="B", link="block", force=(load.formula, 0)) for load in loads],
     )  # fmt: skip
     return Case(

@@ -85,7 +85,7 @@ def _case(part: int, rng: np.random.Generator) -> _Case | None:
         return None
     # the last row of the file may lie beyond that of a coarser table
     last = float(next(iter(motion.inputs.values()))[-1])
-    fine = mechanism.sweep(start=float(table[0]), stop=last, step=step / _FINER, certify=False)
+    fine = mechanism.sweep(from_=float(table[0]), to=last, step=step / _FINER, certify=False)
     return _Case(name, mechanism, whole, fine)
 
 
@@ -146,7 +146,7 @@ def _obstacle_claims(case: _Case, rng: np.random.Generator, counts: Counter[str]
         if found.open is None and gap < -_ROUNDING * size:
             yield f"clear of {centre}, {radius}, which is {-gap} nearer in a row"
         return
-    there = case.mechanism.sweep(start=found.met[1], stop=found.met[1], certify=False)
+    there = case.mechanism.sweep(from_=found.met[1], to=found.met[1], certify=False)
     away = case.distance(there, centre)
     if not away <= radius + _ROUNDING * size:
         yield f"meets {centre}, {radius} at {found.met[1]}, where it is {away} away"

@@ -174,7 +174,7 @@ def test_a_length_that_grows_without_bound_ends_a_circuit() -> None:
         loops={"O P": "r*e^(i*θ) = 1 + i*s"},
         guess={"θ": 0.3, "r": 1.05, "s": 0.3},
         angle="rad",
-        inputs=lw.Input(variable="θ", start=0, stop=6, step=0.1),
+        inputs=lw.Input(variable="θ", from_=0, to=6, step=0.1),
     )
     ends = {circuit.end for circuit in mechanism.circuits()}
     assert ends == {lw.CircuitEnd.RUNS_TO_INFINITY}

@@ -36,7 +36,7 @@ def two_dyads(n: float) -> lw.Mechanism:
             "h": 4.5,
         },
         guess={"t": 60, "p": 35, "q": 70, "x": 100, "y": 250},
-        inputs=lw.Input(variable="t", start=0, stop=360, step=10),
+        inputs=lw.Input(variable="t", from_=0, to=360, step=10),
     )
 
 
@@ -101,7 +101,7 @@ def test_where_dead_points_may_be_missing_the_reason_is_told() -> None:
     kite = lw.loops(
         loops={"1": "e^(i*t) + 2*e^(i*p) = 1 + 2*e^(i*q)"},
         guess={"t": 60, "p": 30, "q": 80},
-        inputs=lw.Input(variable="t", start=0, stop=360, step=10),
+        inputs=lw.Input(variable="t", from_=0, to=360, step=10),
     ).circuits(certify=False)
     assert kite.completeness is Completeness.NOT_PROVED
     assert kite.message.endswith(

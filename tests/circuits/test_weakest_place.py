@@ -27,7 +27,7 @@ def four_bar(bar: FourBar, theta: float, side: int) -> lw.Mechanism:
         loops=LOOP,
         dimensions={"a": bar.r1, "b": bar.r2, "c": bar.r3, "d": bar.r4},
         guess={"t": theta, "p": float(np.angle(coupler)), "q": float(np.angle(rocker))},
-        inputs=lw.Input(variable="t", start=0, stop=6, step=1),
+        inputs=lw.Input(variable="t", from_=0, to=6, step=1),
     )
 
 
@@ -92,7 +92,7 @@ def test_near_a_change_point_the_smallest_value_is_the_root_of_what_is_missing(
 @pytest.mark.parametrize("name", thinned(["rapier-drive", "stephenson-far-crank", "jansen-leg"], 3))
 def test_no_sample_of_a_fine_table_is_weaker(name: str) -> None:
     mechanism = lw.example(name)
-    motion = mechanism.sweep(start=0, stop=360, step=0.02, certify=False)
+    motion = mechanism.sweep(from_=0, to=360, step=0.02, certify=False)
     assert motion.found.all()
     (column,) = motion.inputs.values()
     values = singular_values(mechanism, motion.q, np.radians(column))

@@ -54,7 +54,7 @@ def test_forces_say_when_a_law_leaves_the_reach(run: Run, tmp_path: Path) -> Non
         lengths={"A B": 60, "B C": 40, "C D": 30, "A D": 100},
         links={"ground": ["A", "D"], "crank": ["A", "B"], "rod": ["B", "C"], "rocker": ["C", "D"]},
         masses={"rod": lw.Mass(mass=1, shape="rod")},
-        inputs=lw.Input(link="crank", law="20*t", start=0, stop=5, step=0.5),
+        inputs=lw.Input(link="crank", law="20*t", from_=0, to=5, step=0.5),
     )
     rocker.save(tmp_path / "m.toml")
     done = run("forces", str(tmp_path / "m.toml"))

@@ -239,11 +239,11 @@ def test_what_a_design_says_of_a_number_is_what_its_motion_has(goal: dict[str, A
 
 def test_a_goal_that_is_missed_says_by_how_much_though_rows_are_far_apart() -> None:
     crank = lw.example("slider-crank").changed(
-        inputs=lw.Input(link="crank", start=0, stop=360, step=30)
+        inputs=lw.Input(link="crank", from_=0, to=360, step=30)
     )
     goals = [{"of": "stroke(d)", "target": 90.0}, {"of": "max(d)", "target": 130.0}]
     for design in lw.synthesis.improve(crank, goals, vary=["O2 A"], starts=2):
-        motion = lw.Mechanism(design.description).sweep(start=0, stop=360, step=1)
+        motion = lw.Mechanism(design.description).sweep(from_=0, to=360, step=1)
         misses = {name: abs(motion.value(name) - w) for name, w in
                   (("stroke(d)", 90.0), ("max(d)", 130.0))}  # fmt: skip
         assert max(misses.values()) > 1.0

@@ -82,7 +82,7 @@ def test_a_mechanism_that_cannot_reach_all_points_yet_is_improved_until_it_does(
         points=points, lengths=lengths, trace=["P"],
         links={"ground": ["A0", "B0"], "crank": ["A0", "A"], "coupler": ["A", "B", "P"],
                "rocker": ["B0", "B"]},
-        inputs=lw.Input(link="crank", start=0, stop=350, step=10),
+        inputs=lw.Input(link="crank", from_=0, to=350, step=10),
     )  # fmt: skip
     motion = bar.sweep()
     path = motion.trace("P")
@@ -106,7 +106,7 @@ def test_starts_that_cannot_be_built_are_left_out() -> None:
         points=points, lengths={"A0 A": 25, "A B": 80, "B0 B": 60, "A P": 60, "B P": 30},
         links={"ground": ["A0", "B0"], "crank": ["A0", "A"], "coupler": ["A", "B", "P"],
                "rocker": ["B0", "B"]},
-        inputs=lw.Input(link="crank", start=0, stop=350, step=10),
+        inputs=lw.Input(link="crank", from_=0, to=350, step=10),
     )  # fmt: skip
     motion = bar.with_dimensions({"A P": 62.0}).sweep()
     path = motion.trace("P")

@@ -23,7 +23,7 @@ def rotor(
         length=length,
         points={"O": (0, 0), "A": (30, 0)},
         links={"ground": ["O"], "crank": ["O", "A"]},
-        inputs=lw.Input(link="crank", start=0, stop=360, step=step, speed=speed),
+        inputs=lw.Input(link="crank", from_=0, to=360, step=step, speed=speed),
         loads=[lw.Load(link="crank", torque=torque)],
     )
 
@@ -106,7 +106,7 @@ def test_a_slider_crank_shakes_at_once_and_twice_its_speed() -> None:
         lengths={"O A": crank, "A B": rod},
         sliders=[lw.Slider(name="d", link="piston", points=("B",), on="ground", line=("O", "T"))],
         masses={"piston": lw.Mass(mass=mass)},
-        inputs=lw.Input(link="crank", start=0, stop=360, step=5, speed=f"{speed} rad/s"),
+        inputs=lw.Input(link="crank", from_=0, to=360, step=5, speed=f"{speed} rad/s"),
     )
     found = lw.design.harmonics(engine, "shaking.x", 4)
     size, ratio = mass * crank * speed**2 / 1000.0, crank / rod
@@ -154,7 +154,7 @@ def test_counterweights_of_a_uniform_four_bar() -> None:
             name: lw.Mass(mass=density * lengths[name], shape="rod")
             for name in ("crank", "coupler", "rocker")
         },
-        inputs=lw.Input(link="crank", start=0, stop=360, step=10, speed="60 rpm"),
+        inputs=lw.Input(link="crank", from_=0, to=360, step=10, speed="60 rpm"),
     )
     crank, rocker = lw.design.counterweights(bar, radius=10.0).weights
     for weight, own in ((crank, 30.0), (rocker, 70.0)):
@@ -202,7 +202,7 @@ def test_points_on_the_inflection_circle_have_straight_paths() -> None:
         ),
         (
             lambda m: lw.design.harmonics(
-                m.changed(inputs=lw.Input(link="crank", stop=90, speed="1 rpm")), "crank.effort"
+                m.changed(inputs=lw.Input(link="crank", to=90, speed="1 rpm")), "crank.effort"
             ),
             "needs a whole turn in equal steps, the table goes from 0 to 90 deg",
         ),

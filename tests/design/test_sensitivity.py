@@ -126,7 +126,7 @@ def around(start: float, stop: float, step: float = 1.0) -> lw.Mechanism:
         loops={"1": "r*e^(i*t) = x + i*y"},
         dimensions={"r": 2.0, "c": 1.0, "s": 0.5},
         guess={"t": 30, "x": 1.0, "y": 1.0},
-        inputs=lw.Input(variable="t", start=start, stop=stop, step=step),
+        inputs=lw.Input(variable="t", from_=start, to=stop, step=step),
         outputs={"mixed": "c*x + s*y + 0.1*x^2"},
     )
 

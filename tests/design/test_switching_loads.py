@@ -21,7 +21,7 @@ def rotor(
         length="m",
         points={"O": (0, 0), "A": (0.03, 0)},
         links={"ground": ["O"], "crank": ["O", "A"]},
-        inputs=lw.Input(link="crank", start=start, stop=stop, step=step, speed="300 rpm"),
+        inputs=lw.Input(link="crank", from_=start, to=stop, step=step, speed="300 rpm"),
         loads=[lw.Load(link="crank", torque=torque)],
     )
 
@@ -93,7 +93,7 @@ def test_a_spring_through_no_length_turns_round_within_a_step() -> None:
         length="m",
         points={"O": (0, 0), "P": (r * math.cos(place), r * math.sin(place)), "A": (r, 0)},
         links={"ground": ["O", "P"], "crank": ["O", "A"]},
-        inputs=lw.Input(link="crank", start=0, stop=360, step=5, speed="300 rpm"),
+        inputs=lw.Input(link="crank", from_=0, to=360, step=5, speed="300 rpm"),
         springs=[lw.Spring(name="k", between=("P", "A"), stiffness=stiffness, free=free)],
     )
     found = lw.design.motor_check(machine, stall=1.0, free_speed="1200 rpm")
@@ -127,7 +127,7 @@ def test_the_jumps_of_a_cams_law_are_closed_in() -> None:
             )
         ],
         masses={"follower": lw.Mass(mass=mass)},
-        inputs=lw.Input(link="disc", start=0, stop=360, step=7.2, speed="300 rpm"),
+        inputs=lw.Input(link="disc", from_=0, to=360, step=7.2, speed="300 rpm"),
     )  # fmt: skip
     found = lw.design.motor_check(cam, stall=1e3, free_speed="1200 rpm")
     square = 0.0
@@ -147,7 +147,7 @@ def arm(law: tuple[lw.LawSegment, ...]) -> lw.Mechanism:
         links={"ground": ["O"], "arm": ["O", "A"]},
         masses={"arm": lw.Mass(mass=3, shape="rod")},
         gravity=lw.Gravity(size="9.81 m/s^2"),
-        inputs=lw.Input(link="arm", start=0, stop=1, step=0.01, begin=0, law=law),
+        inputs=lw.Input(link="arm", from_=0, to=1, step=0.01, begin=0, law=law),
     )
 
 
@@ -216,7 +216,7 @@ def test_a_motor_check_needs_one_input() -> None:
 def test_counterweights_balance_a_four_bar_that_a_law_drives() -> None:
     bar = lw.example("four-bar").changed(masses={"coupler": lw.Mass(mass=2, shape="rod")})
     inputs = replace(
-        bar.description.inputs[0], start=0, stop=1, step=0.05, speed=None,
+        bar.description.inputs[0], from_=0, to=1, step=0.05, speed=None,
         law=(lw.LawSegment(law="3-4-5", over="1 s", by=200),),
     )  # fmt: skip
     found = lw.design.counterweights(bar.changed(inputs=inputs), radius=20)

@@ -63,7 +63,7 @@ def test_the_least_angle_is_found_where_many_rows_lie_near_a_dead_point() -> Non
     whole = WholeMotion.of(model_of(leg.description), leg.sweep())
     assert whole is not None
     found = whole.least_transmission(0.0)
-    near = leg.sweep(start=192, stop=194, step=1e-3)["E.transmission"]
+    near = leg.sweep(from_=192, to=194, step=1e-3)["E.transmission"]
     least = np.minimum(near, 180.0 - near).min()
     assert np.degrees(found.low) == pytest.approx(least, abs=6e-5)
     assert np.degrees(found.low) < least < np.degrees(found.high) + 1e-6

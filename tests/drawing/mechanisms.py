@@ -19,7 +19,7 @@ def five_bar_of(left_stop: float) -> lw.Mechanism:
             "b": ["B", "C"],
         },
         inputs=[
-            lw.Input(link="left", start=90, stop=left_stop, step=1),
-            lw.Input(link="right", start=90, stop=80, step=-1),
+            lw.Input(link="left", from_=90, to=left_stop, step=1),
+            lw.Input(link="right", from_=90, to=80, step=-1),
         ],
     )

@@ -86,7 +86,7 @@ def ray_and_line() -> lw.circuits.Circuits:
         loops={"O P": "r*e^(i*θ) = 1 + i*s"},
         guess={"θ": 0.3, "r": 1.05, "s": 0.3},
         angle="rad",
-        inputs=lw.Input(variable="θ", start=0, stop=6, step=0.1),
+        inputs=lw.Input(variable="θ", from_=0, to=6, step=0.1),
     ).circuits()
 
 

@@ -38,12 +38,12 @@ def swung_boom() -> lw.Mechanism:
         points={"O": (0, 0), "A": (100, 0), "M": (80, 70), "C": (180, 0)},
         links={"ground": ("O", "C"), "boom": ("O", "A"), "arm": ("C", "M"), "stick": ("A", "M")},
         cylinders=(lw.Cylinder(name="ram", between=("O", "M")),),
-        inputs=(lw.Input(link="boom", start=-20, stop=40, step=2),),
+        inputs=(lw.Input(link="boom", from_=-20, to=40, step=2),),
     )
 
 
-SLIDE = lw.Input(slider="s", start=220, stop=390, step=2)
-RAM = lw.Input(cylinder="ram", start=90, stop=250, step=2)
+SLIDE = lw.Input(slider="s", from_=220, to=390, step=2)
+RAM = lw.Input(cylinder="ram", from_=90, to=250, step=2)
 MECHANISMS = {
     "slide under a cylinder": lambda: pushed_slide(355 + 160j, SLIDE),
     "slide beside a slanting cylinder": lambda: pushed_slide(150 + 130j, SLIDE),
@@ -137,8 +137,8 @@ def test_arrows_of_two_inputs_keep_clear_of_each_other() -> None:
             lw.Cylinder(name="two", between=("M", "K")),
         ),
         inputs=(
-            lw.Input(cylinder="one", start=78, stop=80, step=1),
-            lw.Input(cylinder="two", start=80, stop=82, step=1),
+            lw.Input(cylinder="one", from_=78, to=80, step=1),
+            lw.Input(cylinder="two", from_=80, to=82, step=1),
         ),
     )
     scene = scene_of(both.solve())

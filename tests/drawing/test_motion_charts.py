@@ -200,7 +200,7 @@ def test_no_line_joins_two_branches() -> None:
 
 
 def test_branches_that_meet_at_a_dead_point_are_not_joined_beyond_the_table() -> None:
-    motion = lw.example("slider-input").sweep(stop=158.5, step=0.5, through=True, certify=False)
+    motion = lw.example("slider-input").sweep(to=158.5, step=0.5, through=True, certify=False)
     [change] = np.flatnonzero([a != b for a, b in pairwise(motion.branch)])
     assert motion["d"][change + 1] - motion["d"][change] < 0.5  # nearer than rows of the table
     [curve] = drawn(motion_chart(motion, ["θ2"]))
@@ -239,7 +239,7 @@ def turning_output() -> lw.Motion:
         links=LINKS,
         lengths={"O2 A": 40, "A B": 120, "O4 B": 80},
         outputs={"direction": "atan2(A.y, A.x)"},
-        inputs=lw.Input(link="crank", start=0, stop=360, step=1),
+        inputs=lw.Input(link="crank", from_=0, to=360, step=1),
     ).sweep(certify=False)
 
 

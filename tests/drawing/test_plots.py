@@ -135,7 +135,7 @@ def test_large_numbers_are_written_with_powers_of_ten_along_the_whole_axis() -> 
 
 def test_a_lone_position_is_a_dot() -> None:
     motion = swept("four-bar")
-    alone = lw.example("four-bar").sweep(start=60, stop=60, step=1, certify=False)
+    alone = lw.example("four-bar").sweep(from_=60, to=60, step=1, certify=False)
     assert (len(alone), len(motion)) == (1, 361)
     page = motion_plot(alone, ["B.x"]).figure(LIGHT)
     [ax] = page.axes

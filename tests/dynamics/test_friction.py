@@ -27,7 +27,7 @@ def block(mu: float, tilt: float = 0.0, **fields: Any) -> lw.Mechanism:
         masses={"block": lw.Mass(mass=2)},
         gravity=lw.Gravity(),
         friction={"d": lw.Friction(mu=mu)},
-        inputs=lw.Input(slider="d", start=0, stop=5, step=1),
+        inputs=lw.Input(slider="d", from_=0, to=5, step=1),
         **fields,
     )
 
@@ -201,7 +201,7 @@ def test_at_rest_an_engine_starts_where_the_effort_of_statics_is_exceeded() -> N
             masses={"crank": lw.Mass(mass=1, center=(0, 0), inertia=2000)},
             loads=[lw.Load(link="crank", torque=-3000)],
             friction={**friction, "d": lw.Friction(mu=0.2)},
-            inputs=lw.Input(slider="d", start=999.5, stop=900, step=-33, motor=motor),
+            inputs=lw.Input(slider="d", from_=999.5, to=900, step=-33, motor=motor),
         )
 
     (stall,) = lw.forces.stalls(pushed(0))

@@ -20,8 +20,8 @@ CART: dict[str, Any] = {
     "masses": {"cart": lw.Mass(mass=3), "bar": lw.Mass(mass=1, center=(1, 0))},
     "gravity": lw.Gravity(),
     "inputs": (
-        lw.Input(slider="d", start=4, stop=6, step=1),
-        lw.Input(link="bar", start=-90, stop=-80, step=5),
+        lw.Input(slider="d", from_=4, to=6, step=1),
+        lw.Input(link="bar", from_=-90, to=-80, step=5),
     ),
 }
 
@@ -116,7 +116,7 @@ def test_a_closed_loop_keeps_its_balance_and_its_units() -> None:
 
 def test_a_cart_bounces_off_a_stop_and_its_pendulum_swings() -> None:
     """M = [[4, 1], [1, 1]] below: the impulse on the cart alone leaves 1 m/s and -2 rad/s."""
-    stop = lw.Stop(of="d", start=4.9, restitution=1)
+    stop = lw.Stop(of="d", from_=4.9, restitution=1)
     motion = lw.linkage(**CART, stops=[stop]).simulate(
         until=0.2, step=0.1, at={"d": 5, "bar": -90}, start_speed={"d": -1}
     )
@@ -168,7 +168,7 @@ def test_whether_a_motion_stays_at_a_stop_depends_on_its_path_too(
 ) -> None:
     directions = np.exp(1j * np.array(angles))
     wall = float(sum(directions).real) + 0.05
-    stops = [lw.Stop(of="B.x", stop=wall)]
+    stops = [lw.Stop(of="B.x", to=wall)]
     given = dict(zip("ab", speeds, strict=True))
     motion = _arms(tuple(directions), "A", stops=stops).simulate(
         until=0.4, step=0.02, start_speed=given
@@ -196,11 +196,11 @@ def test_whether_a_motion_stays_at_a_stop_depends_on_its_path_too(
 
 def test_a_stop_that_a_law_moves_is_a_moving_wall() -> None:
     turning = (lw.LawSegment(law="constant", over=3, by=3),)
-    inputs = (lw.Input(link="a", law=turning), lw.Input(link="b", start=1.5, stop=1.5))
+    inputs = (lw.Input(link="a", law=turning), lw.Input(link="b", from_=1.5, to=1.5))
     masses = {x: lw.Mass(mass=1, center=(0, 0), inertia=1) for x in "ab"}
     arms = _arms(
         (1 + 0j, np.exp(1.5j)), "O", inputs=inputs, masses=masses, outputs={"gap": "b - a"},
-        stops=[lw.Stop(of="gap", start=0.5, restitution=1)],
+        stops=[lw.Stop(of="gap", from_=0.5, restitution=1)],
     )  # fmt: skip
     motion = arms.simulate(until=3, step=0.5, start_speed={"b": 0})
     (hit,) = np.flatnonzero([word == "stop of gap" for word in motion.limit])
@@ -212,8 +212,8 @@ def test_a_stop_that_a_law_moves_is_a_moving_wall() -> None:
 
 def test_a_law_that_moves_into_a_stop_ends_the_motion() -> None:
     turning = (lw.LawSegment(law="constant", over=3, by=3),)
-    inputs = (lw.Input(link="a", law=turning), lw.Input(link="b", start=1, stop=1))
-    stops = [lw.Stop(of="a", stop=1)]
+    inputs = (lw.Input(link="a", law=turning), lw.Input(link="b", from_=1, to=1))
+    stops = [lw.Stop(of="a", to=1)]
     motion = _arms((1 + 0j, 1j), "O", inputs=inputs, stops=stops).simulate(until=3, step=0.5)
     assert "a law drives the mechanism into the stop of a" in motion.message
     assert motion["t"][motion.found].max() == pytest.approx(1.0, abs=1e-12)
@@ -222,7 +222,7 @@ def test_a_law_that_moves_into_a_stop_ends_the_motion() -> None:
 def test_a_cart_stays_at_a_stop_until_its_pendulum_pulls_it_away() -> None:
     """The stop gives what Newton's law of both bodies leaves; where that would pull, it ends."""
     push = lw.Load(point="B", link="cart", force=(-1, 0))
-    cart = lw.linkage(**CART, stops=[lw.Stop(of="d", start=4.9)], loads=[push])
+    cart = lw.linkage(**CART, stops=[lw.Stop(of="d", from_=4.9)], loads=[push])
     motion = cart.simulate(until=2, at={"d": 5, "bar": -90}, start_speed={"d": -1})
     assert motion.found.all()
     hit, off = motion.limit.index("stop of d"), motion.limit.index("start")
@@ -266,7 +266,7 @@ def test_a_stretched_arm_ends_the_motion() -> None:
         ({}, {"start_speed": {"bra": 1}}, 'no input "bra"'),
         ({"masses": {"cart": lw.Mass(mass=3)}}, {}, "without moving a mass"),
         ({"masses": {}}, {}, "has mass"),
-        ({"stops": [lw.Stop(of="d", start=5.5)]}, {"at": {"d": 5, "bar": -90}}, "beyond its stop"),
+        ({"stops": [lw.Stop(of="d", from_=5.5)]}, {"at": {"d": 5, "bar": -90}}, "beyond its stop"),
     ],
 )
 def test_what_is_not_simulated_is_refused(
@@ -281,7 +281,7 @@ def _driven_cart(**more: Any) -> lw.Mechanism:
     """The cart moves 1 m by a law and stays, while its pendulum is free."""
     law = [lw.LawSegment(law="3-4-5", over=1, by=1), lw.LawSegment(law="dwell", over=1)]
     given: dict[str, Any] = {"begin": 5, "law": law} | more
-    bar = lw.Input(link="bar", start=-90, stop=-90)
+    bar = lw.Input(link="bar", from_=-90, to=-90)
     return lw.linkage(**(CART | {"inputs": (lw.Input(slider="d", **given), bar)}))
 
 
@@ -317,8 +317,8 @@ def test_a_pendulum_on_a_cart_that_a_law_drives_is_that_of_newton() -> None:
 
 def test_a_formula_of_the_time_drives_a_crank_of_a_five_bar() -> None:
     """Against the same motion with both cranks driven, by the law of this one and the table."""
-    left = lw.Input(link="left", law="120 + 20*sin(180*t)", start=0, stop=1)
-    right = lw.Input(link="right", start=66, stop=66)
+    left = lw.Input(link="left", law="120 + 20*sin(180*t)", from_=0, to=1)
+    right = lw.Input(link="right", from_=66, to=66)
     arm = _arm(1.0, "m", loads=(), inputs=(left, right))
     motion = arm.simulate(until=0.1, step=0.05)
     law = 120 + 20 * np.sin(np.pi * motion["t"])
@@ -344,7 +344,7 @@ def test_a_formula_of_the_time_drives_a_crank_of_a_five_bar() -> None:
             "the law of d changes its speed at once at 1 s, a shock for the free inputs",
         ),
         (
-            {"law": "5 + t^3", "start": 0.5, "stop": 2, "begin": None},
+            {"law": "5 + t^3", "from_": 0.5, "to": 2, "begin": None},
             {},
             "the law of d begins at 0.5 s, after the simulation: let its formula begin at 0",
         ),
@@ -395,7 +395,7 @@ def test_equilibria_of_a_five_bar_are_at_rest() -> None:
 def test_a_motion_of_several_inputs_may_begin_at_a_stop() -> None:
     masses = {x: lw.Mass(mass=1, center=(0, 0), inertia=1) for x in "ab"}
     begin = float(np.angle(np.exp(0.3j)))
-    stops = [lw.Stop(of="a", start=begin, restitution=1)]
+    stops = [lw.Stop(of="a", from_=begin, restitution=1)]
     arms = _arms((np.exp(0.3j), 1j), "O", masses=masses, stops=stops)
     for speed in (-1, 1):
         motion = arms.simulate(until=1, step=0.5, start_speed={"a": speed})
@@ -409,7 +409,7 @@ def test_a_motion_of_several_inputs_may_begin_at_a_stop() -> None:
 
 @pytest.mark.parametrize("roundings", [0, 1, 2, 4, 8])
 def test_a_stop_next_to_a_switch_is_hit_with_several_inputs(roundings: int) -> None:
-    stop = lw.Stop(of="d", stop=5.05 + roundings * float(np.spacing(5.05)), restitution=0.5)
+    stop = lw.Stop(of="d", to=5.05 + roundings * float(np.spacing(5.05)), restitution=0.5)
     push = lw.Load(point="B", link="cart", force=("3 + 3*(d < 5.05)", 0))
     more: dict[str, Any] = {"gravity": None, "loads": [push], "stops": [stop]}
     motion = lw.linkage(**(CART | more)).simulate(until=0.6, step=0.2, at={"d": 5, "bar": -90})
@@ -429,7 +429,7 @@ def test_a_stop_that_is_touched_before_it_is_pushed_holds(load: str) -> None:
         ],
         masses={"block": lw.Mass(mass=2), "other": lw.Mass(mass=1)},
         loads=[lw.Load(point="C", link="other", force=(load, 0))],
-        stops=[lw.Stop(of="f", start=3)],
-        inputs=tuple(lw.Input(slider=x, start=1, stop=8, step=1) for x in "df"),
+        stops=[lw.Stop(of="f", from_=3)],
+        inputs=tuple(lw.Input(slider=x, from_=1, to=8, step=1) for x in "df"),
     ).simulate(until=2, step=0.1, at={"d": 3, "f": 3})  # fmt: skip
     assert motion["f"] == pytest.approx(3, abs=1e-12)

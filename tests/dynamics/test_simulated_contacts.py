@@ -79,7 +79,7 @@ def rolling(mu: float) -> lw.Mechanism:
         masses={"wheel": lw.Mass(mass=4, inertia=0.18)},
         gravity=lw.Gravity(size="9.81 m/s^2"),
         friction={"x": lw.Friction(mu=mu)},
-        inputs=lw.Input(slider="x", start=0, stop=5, step=1),
+        inputs=lw.Input(slider="x", from_=0, to=5, step=1),
     )
 
 
@@ -120,7 +120,7 @@ def slider(start: float, stop: float) -> lw.Mechanism:
         links={"ground": ["S", "T"], "block": ["B"]},
         masses={"block": lw.Mass(mass=2)},
         sliders=[lw.Slider(name="d", link="block", points=("B",), on="ground", line=("S", "T"))],
-        inputs=lw.Input(slider="d", start=start, stop=stop, step=0.1),
+        inputs=lw.Input(slider="d", from_=start, to=stop, step=0.1),
         springs=[lw.Spring(name="k", between=("S", "B"), stiffness=50, free=0)],
     )
 

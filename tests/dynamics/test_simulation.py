@@ -26,7 +26,7 @@ SLIDER: dict[str, Any] = {
     "links": {"ground": ["S", "T"], "block": ["B"]},
     "sliders": [lw.Slider(name="d", link="block", points=("B",), on="ground", line=("S", "T"))],
     "masses": {"block": lw.Mass(mass=2)},
-    "inputs": lw.Input(slider="d", start=0, stop=5, step=1),
+    "inputs": lw.Input(slider="d", from_=0, to=5, step=1),
 }
 
 
@@ -209,14 +209,14 @@ def test_rows_of_switches_have_the_load_after_them(force: str) -> None:
 def test_a_stop_next_to_a_switch_is_hit(roundings: int) -> None:
     for place in np.linspace(3.05, 3.3, 6).tolist():
         push = lw.Load(point="B", link="block", force=(f"10 + 5*(d < {place!r})", 0))
-        stop = lw.Stop(of="d", stop=place + roundings * float(np.spacing(place)), restitution=0.5)
+        stop = lw.Stop(of="d", to=place + roundings * float(np.spacing(place)), restitution=0.5)
         motion = lw.linkage(**SLIDER, loads=[push], stops=[stop]).simulate(1, step=0.25)
         assert motion["d"].max() < place + 1e-9, place
         assert "stop of d" in motion.limit
 
 
 def test_a_mass_bounces_on_a_stop_and_comes_to_rest() -> None:
-    stop = lw.Stop(of="d", stop=3.2, restitution=0.5)
+    stop = lw.Stop(of="d", to=3.2, restitution=0.5)
     push = lw.Load(point="B", link="block", force=(10, 0))
     motion = lw.linkage(**SLIDER, loads=[push], stops=[stop]).simulate(3, step=0.5)
     hits = motion["t"][[word == "stop of d" for word in motion.limit]]
@@ -226,7 +226,7 @@ def test_a_mass_bounces_on_a_stop_and_comes_to_rest() -> None:
     assert motion["d"].max() <= 3.2 + 1e-14
     assert motion["d"][-1] == pytest.approx(3.2, abs=1e-9)
     assert motion["d.velocity"][-1] == 0.0
-    dead = lw.linkage(**SLIDER, loads=[push], stops=[lw.Stop(of="d", stop=3.2)]).simulate(1)
+    dead = lw.linkage(**SLIDER, loads=[push], stops=[lw.Stop(of="d", to=3.2)]).simulate(1)
     assert sum(word == "stop of d" for word in dead.limit) == 1
 
 
@@ -339,8 +339,8 @@ def test_a_motion_ends_at_a_change_point_unless_it_goes_straight() -> None:
         ({}, {"step": 2}, "step must be a part of until, 1 s, that makes 1 to"),
         ({}, {"start_speed": "3 mm/s"}, "start speed: must be a number and a unit"),
         ({}, {"change_points": "turn"}, "goes straight on or stops"),
-        ({"stops": [lw.Stop(of="bar", stop=100)]}, {}, "bar begins at 180, beyond its stop at 100"),
-        ({"inputs": lw.Input(link="bar", law="180 + t", stop=1)}, {}, "a law drives"),
+        ({"stops": [lw.Stop(of="bar", to=100)]}, {}, "bar begins at 180, beyond its stop at 100"),
+        ({"inputs": lw.Input(link="bar", law="180 + t", to=1)}, {}, "a law drives"),
     ],
 )
 def test_wrong_input_is_refused(
@@ -439,8 +439,8 @@ def test_a_stop_one_length_from_the_start_is_hit(start: float) -> None:
         sliders=[lw.Slider(name="s", link="block", points=("P",), on="ground", line=("O", "T"))],
         masses={"block": lw.Mass(mass=1)},
         loads=[lw.Load(point="P", force=(-1, 0))],
-        stops=[lw.Stop(of="s", start=0)],
-        inputs=lw.Input(slider="s", start=0, stop=1, step=1),
+        stops=[lw.Stop(of="s", from_=0)],
+        inputs=lw.Input(slider="s", from_=0, to=1, step=1),
     )
     motion = block.simulate(until=3)
     assert motion["s"][-1] == pytest.approx(0.0, abs=1e-13)
@@ -503,7 +503,7 @@ def test_a_short_pulse_ends_a_rest() -> None:
         **SLIDER,
         "loads": [lw.Load(point="B", force=("-1 + 2e4*(t > 1.03)*(t < 1.0303)", 0))],
     }
-    stopped = lw.linkage(**pushed, stops=[lw.Stop(of="d", start=3)])
+    stopped = lw.linkage(**pushed, stops=[lw.Stop(of="d", from_=3)])
     motion = stopped.simulate(until=4, step=0.5)
     # an impulse of 6 Ns less that of the steady load
     expected = (6.0 - (4.0 - 1.03)) / 2.0
@@ -537,7 +537,7 @@ def test_a_start_at_a_change_point_is_refused() -> None:
 @pytest.mark.parametrize("start", [3.0, 1.0, 0.9, 0.0])
 def test_equilibria_at_a_stop_and_on_a_stretch_do_not_hang_on_the_start(start: float) -> None:
     machine = {**SLIDER, "points": {**SLIDER["points"], "B": (start, 0)}}
-    stop = lw.Stop(of="d", start=0)
+    stop = lw.Stop(of="d", from_=0)
 
     def places(force: str) -> list[tuple[float, bool, str]]:
         load = lw.Load(point="B", force=(force, 0))

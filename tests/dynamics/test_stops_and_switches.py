@@ -19,7 +19,7 @@ BLOCK: dict[str, Any] = {
     "links": {"ground": ["S", "T"], "block": ["B"]},
     "masses": {"block": lw.Mass(mass=2)},
     "sliders": [lw.Slider(name="d", link="block", points=("B",), on="ground", line=("S", "T"))],
-    "inputs": lw.Input(slider="d", start=-5, stop=8, step=0.1),
+    "inputs": lw.Input(slider="d", from_=-5, to=8, step=0.1),
 }
 FOUR_BAR: dict[str, Any] = {
     "length": "m",
@@ -58,7 +58,7 @@ def _block(force: float | str, **more: Any) -> lw.Mechanism:
 def test_a_block_leaves_its_stop_where_the_contact_would_pull(
     force: str, at: float, restitution: float, leaves: float, end: float
 ) -> None:
-    stop = lw.Stop(of="d", start=2.5, restitution=restitution)
+    stop = lw.Stop(of="d", from_=2.5, restitution=restitution)
     motion = _block(force, stops=[stop]).simulate(until=3, step=0.1, at=at)
     assert motion.found.all()
     start = motion.limit.index("start")
@@ -80,7 +80,7 @@ def test_a_block_leaves_its_stop_where_the_contact_would_pull(
 def test_a_block_with_friction_leaves_its_stop_when_the_load_exceeds_it() -> None:
     """Weight 20 N, μ = 0.1: from -5 + 4 t = 2 on the load overcomes friction."""
     given: dict[str, Any] = {"gravity": lw.Gravity(size="10 m/s^2")}
-    given |= {"friction": {"d": lw.Friction(mu=0.1)}, "stops": [lw.Stop(of="d", start=2.5)]}
+    given |= {"friction": {"d": lw.Friction(mu=0.1)}, "stops": [lw.Stop(of="d", from_=2.5)]}
     motion = _block("-5 + 4*t", **given).simulate(until=3, step=0.1, at=2.6)
     assert motion["t"][motion.limit.index("start")] == pytest.approx(1.75, abs=1e-12)
     assert motion["d"][-1] == pytest.approx(2.5 + 2 * 1.25**3 / 6, abs=1e-12)
@@ -99,8 +99,8 @@ def test_blocks_at_stops_leave_one_after_the_other() -> None:
     mechanism = lw.linkage(
         length="m", points=points, links={"ground": ["S", "T"], "block": ["B"], "other": ["C"]},
         masses={"block": lw.Mass(mass=2), "other": lw.Mass(mass=1)}, sliders=sliders,
-        inputs=[lw.Input(slider=name, start=1, stop=8, step=1) for name in "df"],
-        stops=[lw.Stop(of="d", start=2.5), lw.Stop(of="f", start=3)],
+        inputs=[lw.Input(slider=name, from_=1, to=8, step=1) for name in "df"],
+        stops=[lw.Stop(of="d", from_=2.5), lw.Stop(of="f", from_=3)],
         loads=[
             lw.Load(point="B", link="block", force=("-5 + 4*t", 0)),
             lw.Load(point="C", link="other", force=("-1 + 3*(t > 2)", 0)),
@@ -120,7 +120,7 @@ def test_blocks_at_stops_leave_one_after_the_other() -> None:
 
 def test_reactions_at_rest_are_those_of_a_machine_that_the_stop_holds() -> None:
     """As the effort of a rocker that is held there; nothing else drives the crank."""
-    mechanism = lw.linkage(**FOUR_BAR, stops=[lw.Stop(of="rocker", start=50, stop=80)])
+    mechanism = lw.linkage(**FOUR_BAR, stops=[lw.Stop(of="rocker", from_=50, to=80)])
     motion = mechanism.simulate(until=2, step=0.1)
     driven = {**FOUR_BAR, "inputs": lw.Input(link="rocker")}
     lengths = {"A B": 0.4, "B C": abs(1.1 + 0.6j), "D C": abs(0.3 + 0.6j)}
@@ -146,7 +146,7 @@ def test_reactions_at_rest_are_those_of_a_machine_that_the_stop_holds() -> None:
 def test_a_stop_on_a_quantity_of_several_bodies_leaves_reactions_open() -> None:
     """It holds the machine, and says that its forces on the bodies are not known."""
     outputs = {"lean": "rocker - coupler"}
-    mechanism = lw.linkage(**FOUR_BAR, outputs=outputs, stops=[lw.Stop(of="lean", stop=50)])
+    mechanism = lw.linkage(**FOUR_BAR, outputs=outputs, stops=[lw.Stop(of="lean", to=50)])
     motion = mechanism.simulate(until=2, step=0.1)
     assert "held by the stop of lean" in motion.message
     assert motion["lean"][-1] == pytest.approx(50, abs=1e-9)
@@ -243,7 +243,7 @@ def test_a_spring_of_several_inputs_passes_zero_length() -> None:
     motion = lw.linkage(
         length="m", points=points, links={"ground": ["S", "T"], "block": ["B"], "other": ["C"]},
         masses={"block": lw.Mass(mass=2), "other": lw.Mass(mass=1)}, sliders=sliders,
-        inputs=[lw.Input(slider=name, start=1, stop=8, step=1) for name in "df"],
+        inputs=[lw.Input(slider=name, from_=1, to=8, step=1) for name in "df"],
         springs=[lw.Spring(name="k", between=("B", "C"), stiffness=50, free=1)],
     ).simulate(until=2, step=0.05, start_speed={"d": 8})  # fmt: skip
     assert (motion["f"] - motion["d"]).min() < 0
@@ -286,7 +286,7 @@ def test_rest_against_a_load_of_the_rate_is_exact_and_ends() -> None:
 def test_a_shock_turns_a_load_of_the_rate() -> None:
     """A brake of 3 N: from 4 m/s at 3 m to the stop at 2.5 m and back, 14.5/3 m far."""
     brake = "-3*(d.velocity > 0) + 3*(d.velocity < 0)"
-    stop = lw.Stop(of="d", start=2.5, restitution=1)
+    stop = lw.Stop(of="d", from_=2.5, restitution=1)
     motion = _block(brake, stops=[stop]).simulate(until=4, step=0.5, at=3, start_speed="-4 m/s")
     assert motion["d"][-1] == pytest.approx(2.5 + 14.5 / 3, abs=1e-12)
     assert "held by a load that switches there" in motion.message
@@ -351,7 +351,7 @@ def test_energy_is_kept_near_a_straight_brace() -> None:
             "upper": lw.Mass(mass=0.98658, center=(36.3679, 14.0905), inertia=12887.5),
             "lower": lw.Mass(mass=1.66606, center=(57.6273, -24.013), inertia=9171.3),
         },
-        inputs=lw.Input(cylinder="actuator", start=76, stop=114, step=0.5),
+        inputs=lw.Input(cylinder="actuator", from_=76, to=114, step=0.5),
     )  # fmt: skip
     motion = gear.simulate(until=0.4, step=0.004, start_speed="-20 mm/s")
     energy = motion["kinetic_energy"] + motion["stored_energy"]
@@ -406,7 +406,7 @@ def test_a_block_that_has_bounced_off_its_stop_does_not_rest_on_it_later() -> No
     motion = lw.linkage(
         **BLOCK, gravity=lw.Gravity(size="10 m/s^2"), friction={"d": lw.Friction(mu=0.1)},
         springs=[lw.Spring(name="k", between=("S", "B"), stiffness=4, free=3)],
-        stops=[lw.Stop(of="d", start=3, restitution=0.5)],
+        stops=[lw.Stop(of="d", from_=3, restitution=0.5)],
     ).simulate(until=1.2, step=0.1, start_speed=-4)  # fmt: skip
     turn = motion.limit.index("rest") if "rest" in motion.limit else int(np.argmax(motion["d"]))
     assert motion["d"][turn] == pytest.approx(4, abs=1e-2)

@@ -17,7 +17,7 @@ def _xy(**places: complex) -> dict[str, tuple[float, float]]:
 
 
 def _turn(link: str) -> tuple[lw.Input]:
-    return (lw.Input(link=link, start=0, stop=360, step=3),)
+    return (lw.Input(link=link, from_=0, to=360, step=3),)
 
 
 def _slider_crank(**slider: Any) -> lw.Mechanism:
@@ -104,11 +104,11 @@ def _boom(which: lw.Input) -> lw.Mechanism:
 
 
 def cylinder_as_input() -> lw.Mechanism:
-    return _boom(lw.Input(cylinder="ram", start=1.2, stop=3.2, step=0.02))
+    return _boom(lw.Input(cylinder="ram", from_=1.2, to=3.2, step=0.02))
 
 
 def cylinder_that_follows() -> lw.Mechanism:
-    return _boom(lw.Input(link="boom", start=0, stop=150, step=1))
+    return _boom(lw.Input(link="boom", from_=0, to=150, step=1))
 
 
 def slider_as_input() -> lw.Mechanism:
@@ -122,7 +122,7 @@ def slider_as_input() -> lw.Mechanism:
         },
         lengths={"O A": 1, "A B": 3},
         sliders=(lw.Slider(name="s", link="block", points=("B",), on="ground", line=("S", "T")),),
-        inputs=(lw.Input(slider="s", start=2.1, stop=3.9, step=0.02),),
+        inputs=(lw.Input(slider="s", from_=2.1, to=3.9, step=0.02),),
     )
 
 
@@ -141,11 +141,11 @@ def _four_bar(which: lw.Input) -> lw.Mechanism:
 
 
 def link_against_link() -> lw.Mechanism:
-    return _four_bar(lw.Input(link="coupler", relative_to="crank", start=-90, stop=10, step=1))
+    return _four_bar(lw.Input(link="coupler", relative_to="crank", from_=-90, to=10, step=1))
 
 
 def joint_as_input() -> lw.Mechanism:
-    return _four_bar(lw.Input(joint="B", start=30, stop=100, step=1))
+    return _four_bar(lw.Input(joint="B", from_=30, to=100, step=1))
 
 
 def pin_of_three_links() -> lw.Mechanism:
@@ -199,7 +199,7 @@ def five_bar() -> lw.Mechanism:
         },
         lengths={"O A": 1, "C B": 1, "A P": 2.5, "B P": 2.2},
         inputs=(
-            lw.Input(link="left", start=20, stop=120, step=1, speed="2 rad/s"),
-            lw.Input(link="right", start=160, stop=110, step=-0.5),
+            lw.Input(link="left", from_=20, to=120, step=1, speed="2 rad/s"),
+            lw.Input(link="right", from_=160, to=110, step=-0.5),
         ),
     )

@@ -127,7 +127,7 @@ def test_a_ring_that_rolls_around_a_circle_rests_where_it_touches() -> None:
             lw.Rolling(name="way", wheel="ring", center="C", radius=30, circle="O",
                        circle_radius=20, inside=True),
         ),
-        inputs=(lw.Input(link="ring", start=0, stop=360, step=10),),
+        inputs=(lw.Input(link="ring", from_=0, to=360, step=10),),
     )  # fmt: skip
     motion = Seen(mechanism, mechanism.sweep())
     c = motion.at("C")
@@ -170,8 +170,8 @@ def test_planetary_ratios_are_those_of_willis(
 ) -> None:
     motion = planetary(
         inputs=(
-            lw.Input(link=driven, start=0, stop=360, step=30),
-            lw.Input(link=held, start=0, stop=0, step=1),
+            lw.Input(link=driven, from_=0, to=360, step=30),
+            lw.Input(link=held, from_=0, to=0, step=1),
         )
     ).sweep()
     values = np.arange(0, 361, 30)
@@ -188,7 +188,7 @@ def test_cardan_circles_draw_a_straight_line_and_an_ellipse() -> None:
             lw.Rolling(name="arm", wheel="wheel", center="C", radius=30, circle="O",
                        circle_radius=60, inside=True),
         ),
-        inputs=(lw.Input(link="wheel", start=0, stop=-360, step=-5),),
+        inputs=(lw.Input(link="wheel", from_=0, to=-360, step=-5),),
     )  # fmt: skip
     motion = mechanism.sweep()
     phi = np.radians(np.arange(0, 361, 5))
@@ -203,7 +203,7 @@ def test_a_point_of_a_rolling_rim_draws_the_cycloid() -> None:
         links={"ground": ("S", "T"), "wheel": ("C", "P")},
         lengths={"C P": 10},
         rolling=(lw.Rolling(name="x", wheel="wheel", center="C", radius=10, line=("S", "T")),),
-        inputs=(lw.Input(slider="x", start=0, stop=60, step=1),),
+        inputs=(lw.Input(slider="x", from_=0, to=60, step=1),),
     )
     motion = mechanism.sweep()
     t = np.arange(0, 61) / 10
@@ -224,8 +224,8 @@ def test_the_phase_is_the_second_wheels_angle_where_the_firsts_is_zero() -> None
                         teeth=(40, 15), phase=33),
             ),
             inputs=(
-                lw.Input(link="left", relative_to="bar", start=0, stop=20, step=10),
-                lw.Input(link="bar", start=arm_turn, stop=arm_turn, step=1),
+                lw.Input(link="left", relative_to="bar", from_=0, to=20, step=10),
+                lw.Input(link="bar", from_=arm_turn, to=arm_turn, step=1),
             ),
         )  # fmt: skip
         motion = mechanism.sweep()
@@ -357,7 +357,7 @@ def test_the_outline_that_a_motion_makes_makes_that_motion(contact_kind: str, sw
                 lw.Cam(name="law", cam="cam", center="O", contact=contact_kind, **follower,
                        **size, **shape),
             ),
-            inputs=(lw.Input(link="cam", start=0.37, stop=360.37, step=3.6),),
+            inputs=(lw.Input(link="cam", from_=0.37, to=360.37, step=3.6),),
         )  # fmt: skip
 
     by_law = cam(**law)
@@ -392,7 +392,7 @@ def test_the_motion_begins_at_the_start_angle_and_runs_with_the_cam() -> None:
                        lw.Segment(law="3-4-5", over=90, lift=-10),
                    )),
         ),
-        inputs=(lw.Input(link="cam", start=0, stop=390, step=15),),
+        inputs=(lw.Input(link="cam", from_=0, to=390, step=15),),
     )  # fmt: skip
     motion = mechanism.sweep()
     s = dict(zip(motion.inputs["cam"], motion["s"] - 1.0, strict=True))

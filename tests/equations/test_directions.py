@@ -68,7 +68,7 @@ def _with(equation: str, **guess: float) -> lw.Mechanism:
         name="one loop",
         loops={"l": equation},
         guess={"q": 60, **guess},
-        inputs=(lw.Input(variable="q", start=0, stop=10, step=1),),
+        inputs=(lw.Input(variable="q", from_=0, to=10, step=1),),
     )
 
 
@@ -116,13 +116,13 @@ def test_sums_of_angles_are_directions_of_their_own() -> None:
         name="absolute",
         loops={"l": "e^(i*q) + 3*e^(i*a) - 2*e^(i*b) = 2.5"},
         guess={"q": 60, "a": 20, "b": 70},
-        inputs=(lw.Input(variable="q", start=0, stop=10, step=1),),
+        inputs=(lw.Input(variable="q", from_=0, to=10, step=1),),
     )
     relative = lw.loops(
         name="relative",
         loops={"l": "e^(i*q) + 3*e^(i*(q + c)) - 2*e^(i*(q + c + d)) = 2.5"},
         guess={"q": 60, "c": -40, "d": 50},
-        inputs=(lw.Input(variable="q", start=0, stop=10, step=1),),
+        inputs=(lw.Input(variable="q", from_=0, to=10, step=1),),
     )
     for a, b in zip(plain.configurations(), relative.configurations(), strict=True):
         assert np.exp(1j * np.radians(a["a"] - 60 - b["c"])) == pytest.approx(1, abs=1e-12)

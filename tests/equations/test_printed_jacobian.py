@@ -37,7 +37,7 @@ CASES = {
 CASES |= {kind: contact(kind, 5) for kind in KINDS}
 CASES |= {
     "cam angle as unknown": contact("cam by its follower, sliding roller", 6).changed(
-        inputs=lw.Input(slider="s", start=50, stop=51, step=1)
+        inputs=lw.Input(slider="s", from_=50, to=51, step=1)
     )
 }
 

@@ -112,7 +112,7 @@ def circle(stop: float, step: float, **settings: object) -> lw.Motion:
         equations=CIRCLE,
         dimensions={"r": 2},
         guess={"x": 1.9, "y": 0.5, "t": 0.5},
-        inputs=lw.Input(variable="t", start=0, stop=stop, step=step),
+        inputs=lw.Input(variable="t", from_=0, to=stop, step=step),
     ).sweep(**settings)  # type: ignore[arg-type]
 
 
@@ -139,7 +139,7 @@ def test_a_row_where_branches_may_not_meet_is_not_found() -> None:
     motion = lw.plain_equations(
         equations={"1": "x^2 = t^2 - 1e-30"},
         guess={"x": 0.5, "t": 0.5},
-        inputs=lw.Input(variable="t", start=-1, stop=1, step=0.5),
+        inputs=lw.Input(variable="t", from_=-1, to=1, step=0.5),
     ).sweep(change_points="straight", certify=False)
     row = int(np.argmin(np.abs(np.array(motion.inputs["t"]))))
     assert motion.status[row] is not lw.Status.CONVERGED

@@ -155,8 +155,8 @@ def _drive(back: Linkage, linkage: Linkage, places: Mapping[str, complex]) -> lw
             Input(
                 link=name,
                 relative_to=which.relative_to,
-                start=start * factor,
-                stop=stop * factor,
+                from_=start * factor,
+                to=stop * factor,
                 step=None if step is None else step * factor,
             )
         )

@@ -17,7 +17,7 @@ from linkwork.core.mechanism.linkage import Linkage
 from linkwork.readers.formats import FORMATS, read_foreign
 from tests.exchange.samples import GEOGEBRA, SAMPLES, dxf_text, packed
 
-_ROWS: dict[str, Any] = {"start": 53.13010235415598, "stop": 413.13010235415598, "step": 45.0}
+_ROWS: dict[str, Any] = {"from_": 53.13010235415598, "to": 413.13010235415598, "step": 45.0}
 #: The four-bar of the samples, whose crank begins at (24, 32).
 _BAR: dict[str, Any] = {
     "points": {"O": (0, 0), "A": (24, 32), "B": (120, 64), "Q": (100, 0)},
@@ -99,7 +99,7 @@ def test_lengths_of_linkage_files_are_in_96ths_of_an_inch(
     found = read_foreign(text.encode(), "ten.linkage2")
     assert found.linkage.length == unit
     assert found.linkage.points["P1"] == pytest.approx((size, 0.0), rel=1e-14)
-    assert found.linkage.inputs[0].stop == pytest.approx(12 * size, rel=1e-14)
+    assert found.linkage.inputs[0].to == pytest.approx(12 * size, rel=1e-14)
     unknown = 'unknown "Leagues", mm is assumed'
     assert (unknown in {own.what for own in found.left_out}) == (shown == "Leagues")
 

@@ -81,7 +81,7 @@ def test_what_a_drawing_shows_from_behind_or_on_its_sheet_is_left_out() -> None:
 
 def test_joints_that_follow_a_follower_have_its_range() -> None:
     linkage = read_foreign(_ARM.format(one="").encode(), "arm.urdf").linkage
-    turns = [(which.start, which.stop) for which in linkage.inputs]
+    turns = [(which.from_, which.to) for which in linkage.inputs]
     spans = [float(b) - float(a) for a, b in turns]  # type: ignore[arg-type]  # numbers
     assert spans[1] == pytest.approx(2 * spans[0])
     assert spans[2] == pytest.approx(-spans[1])

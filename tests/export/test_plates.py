@@ -45,7 +45,7 @@ def test_plates_keep_the_dimensions_and_do_not_touch(name: str) -> None:
 
 def test_rows_without_a_position_are_counted(tmp_path: Path) -> None:
     mechanism = read_example("parallelogram")
-    motion = mechanism.sweep(start=0, stop=360, step=30)
+    motion = mechanism.sweep(from_=0, to=360, step=30)
     lost = np.count_nonzero(~motion.found)
     stack = mechanism.write(tmp_path / "x.svg", motion=motion, kind="plates")
     assert 0 < lost < len(motion)
@@ -180,7 +180,7 @@ def test_a_bridge_holds_pins_that_cranks_would_run_into() -> None:
 
 def test_columns_that_are_hit_between_the_rows_move_outwards() -> None:
     mechanism = read_example("drag-link")
-    motion = mechanism.sweep(start=254.4, stop=334.4, step=80)
+    motion = mechanism.sweep(from_=254.4, to=334.4, step=80)
     options = lw.writers.PlateOptions(gap=0.0, width=20.0)
     stack = stack_of(mechanism.model, motion, options)
     assert sum(pin.name.startswith("column") for pin in stack.pins) == 4

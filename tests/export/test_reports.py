@@ -225,7 +225,7 @@ def test_a_distance_without_rows_is_refused() -> None:
 
 
 def test_a_motion_of_one_row_has_a_table_of_one_row() -> None:
-    bar = read_example("four-bar").changed(inputs=[lw.Input(link="crank", start=60, stop=60)])
+    bar = read_example("four-bar").changed(inputs=[lw.Input(link="crank", from_=60, to=60)])
     crank, *_ = _tables(_of(bar, Template(sections=("motion",))))["Motion"].columns
     assert _numbers(crank) == [60]
 

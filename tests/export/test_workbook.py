@@ -152,7 +152,7 @@ def test_a_derived_dimension_is_a_formula_of_the_others(tmp_path: Path) -> None:
 
 @pytest.mark.parametrize(
     ("name", "asked"),
-    [("jansen-leg", {"step": 60}), ("parallel-cranks", {"start": 161, "stop": 175, "step": 7})],
+    [("jansen-leg", {"step": 60}), ("parallel-cranks", {"from_": 161, "to": 175, "step": 7})],
 )
 def test_cells_contain_the_values_of_their_formulas(
     name: str, asked: dict[str, Any], tmp_path: Path
@@ -171,7 +171,7 @@ def test_cells_contain_the_values_of_their_formulas(
 
 def test_an_even_table_with_endless_digits_has_a_first_value_and_a_step(tmp_path: Path) -> None:
     mechanism = lw.example("four-bar")
-    motion = mechanism.sweep(start=0, stop=400, step=400 / 3, certify=False)
+    motion = mechanism.sweep(from_=0, to=400, step=400 / 3, certify=False)
     sheet = written(tmp_path, mechanism, motion)
     assert sheet.book["Cycle"]["B8"].value == "=theta_crank_from+theta_crank_step*($A8-1)"
     assert sheet["Cycle", "B10"] == pytest.approx(400, rel=1e-13)
@@ -185,7 +185,7 @@ def test_cells_are_those_that_xlsxwriter_writes_itself(
     names = {name for name in vars(FastCells) if callable(getattr(FastCells, name))} - {"follow"}
     assert names == {"_prepare_formula", "_write_cell"} <= set(vars(Worksheet))
     mechanism = lw.example("rapier-drive-limited")
-    motion = mechanism.sweep(start=60, stop=180, step=60, certify=False)
+    motion = mechanism.sweep(from_=60, to=180, step=60, certify=False)
     fast = cells_of(written(tmp_path, mechanism, motion), tmp_path)
     assert len(fast) > 500
     monkeypatch.setattr(workbook, "FastCells", type("Slow", (), {"follow": FastCells.follow}))

@@ -45,7 +45,7 @@ def test_the_inputs_of_a_proof_are_all_named(tmp_path: Path) -> None:
     ],
 )
 def test_no_changed_row_is_proved(cell: str, value: float, tmp_path: Path) -> None:
-    sheet = written(tmp_path, lw.example("four-bar"), start=90, stop=360, step=90)
+    sheet = written(tmp_path, lw.example("four-bar"), from_=90, to=360, step=90)
     sheet.set(cell, value)
     changed = 3 if cell == "theta_crank_step" else 4  # the first row has no step
     assert statuses(sheet)["converged (not proved)"] == changed
@@ -80,7 +80,7 @@ def test_a_row_out_of_reach_after_a_change_has_no_position(tmp_path: Path) -> No
 
 
 def test_a_row_that_comes_into_reach_after_a_change_has_a_position(tmp_path: Path) -> None:
-    sheet = written(tmp_path, lw.example("rapier-drive-limited"), start=60, stop=180, step=30)
+    sheet = written(tmp_path, lw.example("rapier-drive-limited"), from_=60, to=180, step=30)
     out = "no position: this branch does not reach the input value (OUT_OF_REACH)"
     lost = statuses(sheet)[out]
     assert lost > 0
@@ -118,6 +118,6 @@ def test_a_changed_grey_cell_is_said_not_to_be_solved(tmp_path: Path) -> None:
 
 
 def test_a_redundant_link_that_does_not_fit_is_named(tmp_path: Path) -> None:
-    sheet = written(tmp_path, lw.example("scissor-three-bars"), start=60, stop=90, step=10)
+    sheet = written(tmp_path, lw.example("scissor-three-bars"), from_=60, to=90, step=10)
     sheet.set("OC", 61.0)
     assert statuses(sheet) == {"redundant link bar3 does not fit": 4}

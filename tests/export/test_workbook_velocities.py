@@ -94,7 +94,7 @@ def test_rates_of_equations_with_functions_are_their_derivatives(tmp_path: Path)
 
 def test_a_row_without_a_position_has_no_rates(tmp_path: Path) -> None:
     mechanism = lw.example("rapier-drive-limited")
-    motion = mechanism.sweep(start=60, stop=150, step=30, certify=False)
+    motion = mechanism.sweep(from_=60, to=150, step=30, certify=False)
     sheet = written(tmp_path, mechanism, motion)
     place, cell = sheet.names["s16.velocity"].replace("$", "").split("!")
     for row, there in enumerate(motion.found[motion.asked]):

@@ -202,7 +202,7 @@ def test_a_pinion_or_a_wheel_sketched_on_its_line_is_asked_for_its_side() -> Non
                 lw.Slider(name="s", link="rack", points=("R",), on="ground", line=("S", "T")),
             ),
             racks=(lw.Rack(name="m", pinion="pinion", center="O", slider="s", radius=20),),
-            inputs=(lw.Input(link="pinion", start=0, stop=90, step=90),),
+            inputs=(lw.Input(link="pinion", from_=0, to=90, step=90),),
         )
 
     for y, moved in ((20, 10 * 3.141592653589793), (-20, -10 * 3.141592653589793)):

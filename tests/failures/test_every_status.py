@@ -93,7 +93,7 @@ def change_point() -> Reached:
 
 
 def out_of_circuit() -> Reached:
-    motion = four_bar(4, 2, 5, 2, at=90).sweep(start=-40, stop=40, step=10, through=True)
+    motion = four_bar(4, 2, 5, 2, at=90).sweep(from_=-40, to=40, step=10, through=True)
     place = 'where loop "O2 A B O4" locks (coupler and rocker in line)'
     return motion, (
         "9 of 9 positions were not found; this circuit does not reach the input value on any of "
@@ -110,7 +110,7 @@ def start_singular() -> Reached:
         sliders=[
             lw.Slider(name="s", link="block", points=("B",), angle=0, on="ground", line=("O2", "T"))
         ],
-        inputs=lw.Input(slider="s", start=160, stop=80, step=-5),
+        inputs=lw.Input(slider="s", from_=160, to=80, step=-5),
     )
     # law of cosines in the triangle 40, 120, 100
     crank = math.degrees(math.acos((40**2 + 100**2 - 120**2) / (2 * 40 * 100)))
@@ -129,7 +129,7 @@ def lost() -> Reached:
         name="square root",
         equations={"f": "x - u*sqrt(u) = 0"},
         guess={"x": 1, "u": 1},
-        inputs=lw.Input(variable="u", start=1, stop=-1, step=-0.5),
+        inputs=lw.Input(variable="u", from_=1, to=-1, step=-0.5),
     )
     position = mechanism.solve(at=-1)
     # where exactly the steps become too short is a matter of rounding

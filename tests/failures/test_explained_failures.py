@@ -267,7 +267,7 @@ def test_an_input_of_a_slider_says_the_length_that_can_be_reached() -> None:
         sliders=[
             lw.Slider(name="s", link="block", points=("B",), angle=0, on="ground", line=("O", "T"))
         ],
-        inputs=lw.Input(slider="s", start=100, stop=200, step=10),
+        inputs=lw.Input(slider="s", from_=100, to=200, step=10),
     )
     position = mechanism.solve(at=200)
     failure = failure_of(position)

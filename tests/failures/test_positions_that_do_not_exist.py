@@ -186,8 +186,8 @@ FIVE_BAR = {
 
 def test_a_table_of_two_inputs_whose_nearest_row_is_out_of_reach_is_entered_elsewhere() -> None:
     driven = [
-        lw.Input(link="l", start=0, stop=360, step=1),
-        lw.Input(link="r", start=90, stop=-630, step=-2),
+        lw.Input(link="l", from_=0, to=360, step=1),
+        lw.Input(link="r", from_=90, to=-630, step=-2),
     ]
     mechanism = lw.linkage(**FIVE_BAR, inputs=driven)
     motion = mechanism.sweep()
@@ -201,8 +201,8 @@ def test_a_table_of_two_inputs_whose_nearest_row_is_out_of_reach_is_entered_else
 
 def test_an_input_of_one_value_is_held_there_while_the_other_moves() -> None:
     driven = [
-        lw.Input(link="l", start=170, stop=200, step=1),
-        lw.Input(link="r", start=66, stop=66),
+        lw.Input(link="l", from_=170, to=200, step=1),
+        lw.Input(link="r", from_=66, to=66),
     ]
     motion = lw.linkage(**FIVE_BAR, inputs=driven).sweep()
     assert len(motion) == 31
@@ -211,14 +211,14 @@ def test_an_input_of_one_value_is_held_there_while_the_other_moves() -> None:
 
 
 def test_a_length_that_is_held_needs_no_step() -> None:
-    held = lw.Input(cylinder="leg2", start=15.38, stop=15.38)
-    moving = lw.Input(cylinder="leg1", start=14.98, stop=14.9, step=-0.02)
-    third = lw.Input(cylinder="leg3", start=12, stop=12)
+    held = lw.Input(cylinder="leg2", from_=15.38, to=15.38)
+    moving = lw.Input(cylinder="leg1", from_=14.98, to=14.9, step=-0.02)
+    third = lw.Input(cylinder="leg3", from_=12, to=12)
     motion = lw.example("three-rpr").changed(inputs=[moving, held, third]).sweep()
     np.testing.assert_array_equal(motion["leg2"], np.full(5, 15.38))
     with pytest.raises(lw.MechanismError, match=r"input\[1\]\.step.*no natural range"):
         lw.example("three-rpr").changed(
-            inputs=[lw.Input(cylinder="leg1", start=14.98, stop=14.9), held, third]
+            inputs=[lw.Input(cylinder="leg1", from_=14.98, to=14.9), held, third]
         )
 
 
@@ -247,7 +247,7 @@ def test_a_dead_point_of_two_coupled_loops_is_out_of_reach_and_not_lost() -> Non
     assert {limit.kind for limit in motion.limits} == {lw.core.results.LimitKind.DEAD_POINT}
     assert {s for s in motion.status if not s.ok} == {lw.Status.OUT_OF_REACH}
     low, high = motion.limits
-    inside = mechanism.sweep(start=high.input - 1e-6, stop=high.input - 5e-7, step=1e-7)
+    inside = mechanism.sweep(from_=high.input - 1e-6, to=high.input - 5e-7, step=1e-7)
     assert inside.certified.all()
     # rate**-2 falls to zero at a dead point, linearly but for the square root of the distance
     rates = inside.unknowns["l2"].first ** -2.0
@@ -263,7 +263,7 @@ def test_a_start_on_a_dead_point_says_so() -> None:
         sliders=[
             lw.Slider(name="s", link="block", points=("B",), angle=0, on="ground", line=("O2", "T"))
         ],
-        inputs=lw.Input(slider="s", start=160, stop=80, step=-5),
+        inputs=lw.Input(slider="s", from_=160, to=80, step=-5),
     )
     assert mechanism.solve().message.startswith("position found at a dead point or change point")
     motion = mechanism.sweep()

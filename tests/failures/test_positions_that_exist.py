@@ -125,6 +125,6 @@ def test_a_long_chain_is_not_listed() -> None:
     for k in range(count):
         guess |= {f"b{k}": 10.0, f"a{k + 1}": 60.0}
     mechanism = lw.loops(
-        name="chain", loops=loops, guess=guess, inputs=lw.Input(variable="a0", start=0, stop=9)
+        name="chain", loops=loops, guess=guess, inputs=lw.Input(variable="a0", from_=0, to=9)
     )
     assert positions_elsewhere(mechanism.model, mechanism.model.start_inputs) is None

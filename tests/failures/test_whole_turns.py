@@ -75,7 +75,7 @@ def test_a_far_length_is_followed_and_not_wrapped() -> None:
 def test_a_wheel_rolls_on_by_the_same_length_with_every_turn() -> None:
     wheel = lw.example("rolling-wheel")
     begin = wheel.solve(at=-90)["x"]
-    motion = wheel.sweep(start=0, stop=360e6, step=72e6 + 30)
+    motion = wheel.sweep(from_=0, to=360e6, step=72e6 + 30)
     expected = begin - 40 * (np.radians(motion.inputs["wheel"]) + math.pi / 2)
     np.testing.assert_allclose(motion["x"], expected, rtol=1e-14)
     assert motion.certified.all()
@@ -83,7 +83,7 @@ def test_a_wheel_rolls_on_by_the_same_length_with_every_turn() -> None:
 
 def test_turns_beyond_counting_are_refused() -> None:
     with pytest.raises(lw.InputError) as refused:
-        lw.example("four-bar").sweep(start=1e300, stop=1e300, step=1)
+        lw.example("four-bar").sweep(from_=1e300, to=1e300, step=1)
     assert str(refused.value) == (
         "crank is asked for 2.778e+297 turns from the guess: beyond 1e15 turns a number says "
         "nothing about the angle; leave out whole turns"
@@ -105,7 +105,7 @@ def test_a_table_far_from_the_guess_of_a_plain_number_is_reached_in_few_steps() 
     cubic = lw.plain_equations(
         equations={"F": "x^3 - 3*x + t = 0"},
         guess={"x": 2, "t": 1},
-        inputs=lw.Input(variable="t", start=-1e9, stop=-1e9 + 10, step=10),
+        inputs=lw.Input(variable="t", from_=-1e9, to=-1e9 + 10, step=10),
     )
     began = time.monotonic()
     motion = cubic.sweep()

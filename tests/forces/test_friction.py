@@ -28,10 +28,10 @@ def slider_crank(
     """A crank of 200 and a rod of 800 in line; 100 N push the block, or a torque resists."""
     friction = {name: lw.Friction(mu=mu, radius=radius) for name in "OAB"}
     load = lw.Load(point="B", link="block", force=(-LOAD, 0))
-    which = lw.Input(link="crank", start=0, stop=360, step=5, speed=speed)
+    which = lw.Input(link="crank", from_=0, to=360, step=5, speed=speed)
     if driven == "d":
         load = lw.Load(link="crank", torque=-3000)
-        which = lw.Input(slider="d", start=999.5, stop=900, step=-33, speed=speed)
+        which = lw.Input(slider="d", from_=999.5, to=900, step=-33, speed=speed)
     return lw.linkage(
         length="mm",
         points={"O": (0, 0), "T": (10, 0), "A": (115, 164), "B": (897, 0)},
@@ -139,7 +139,7 @@ def trammel(mu: float) -> lw.Mechanism:
         ],
         loads=[lw.Load(point="Q", link="second", force=(0, -10))],
         friction={"x": lw.Friction(mu=mu), "y": lw.Friction(mu=mu)},
-        inputs=lw.Input(slider="x", start=99, stop=50, step=-16),
+        inputs=lw.Input(slider="x", from_=99, to=50, step=-16),
     )
 
 
@@ -173,7 +173,7 @@ def drawer(length: float, side: float) -> lw.Mechanism:
         sliders=[lw.Slider(name="d", link="block", points=("B",), on="ground", line=("S", "T"))],
         loads=[lw.Load(point="C", force=(-7, 0))],
         friction={"d": lw.Friction(mu=0.25, length=length)},
-        inputs=lw.Input(slider="d", start=0, stop=5, step=1),
+        inputs=lw.Input(slider="d", from_=0, to=5, step=1),
     )
 
 
@@ -189,7 +189,7 @@ def test_a_light_load_on_its_own_does_not_drive_a_mechanism_back() -> None:
     found = drawer(20.0, 50.0).forces(at=2)
     assert found["d.effort.backward"] < 0.0 < found["d.effort"]
     driven = drawer(20.0, 50.0).changed(
-        inputs=lw.Input(slider="d", start=5, stop=0, step=-1)
+        inputs=lw.Input(slider="d", from_=5, to=0, step=-1)
     ).forces(at=2)  # fmt: skip
     assert driven["efficiency"] == pytest.approx((7.0 - 2.0 * 0.25 * 7.0 * 50.0 / 20.0) / 7.0)
 
@@ -271,7 +271,7 @@ def _rubbing_in(length: str, size: float) -> lw.forces.Reactions:
                lw.Load(link="wheel", torque=-2000 * size)],
         friction={**friction, "d": lw.Friction(mu=0.12, length=40 * size),
                   "mesh": lw.Friction(mu=0.06, radius=2 * size)},
-        inputs=lw.Input(link="crank", start=0, stop=360, step=15),
+        inputs=lw.Input(link="crank", from_=0, to=360, step=15),
     ).forces()  # fmt: skip
 
 

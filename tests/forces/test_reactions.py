@@ -88,8 +88,8 @@ def test_redundant_links_with_two_inputs_keep_their_reactions() -> None:
                 "F": (15, 10), "G": (60, 40)},
         links={"ground": ["A", "C", "E"], "left": ["A", "B"], "right": ["C", "D"],
                "middle": ["E", "F"], "bar": ["B", "F", "D"], "arm": ["D", "G"]},
-        inputs=[lw.Input(link="left", start=90, stop=100, step=5),
-                lw.Input(link="arm", start=40, stop=40, step=0)],
+        inputs=[lw.Input(link="left", from_=90, to=100, step=5),
+                lw.Input(link="arm", from_=40, to=40, step=0)],
         loads=[lw.Load(point="G", link="arm", force=(0, -5))],
     )  # fmt: skip
     found = cranks.forces(at={"left": 90, "arm": 40})
@@ -101,7 +101,7 @@ def test_a_block_pushed_beside_its_line_needs_a_moment() -> None:
         points={"S": (0, 0), "T": (10, 0), "B": (3, 0), "C": (3, 2)},
         links={"ground": ["S", "T"], "block": ["B", "C"]},
         sliders=[lw.Slider(name="d", link="block", points=("B",), on="ground", line=("S", "T"))],
-        inputs=lw.Input(slider="d", start=0, stop=5, step=1),
+        inputs=lw.Input(slider="d", from_=0, to=5, step=1),
         loads=[lw.Load(point="C", force=(-7, -3))],
     )
     found = table.forces(at=2)
@@ -231,7 +231,7 @@ def test_loads_are_formulas_of_time_rates_and_comparisons() -> None:
     lever = lw.linkage(
         points={"O": (0, 0), "A": (30, 0)},
         links={"ground": ["O"], "lever": ["O", "A"]},
-        inputs=lw.Input(link="lever", start=0, stop=90, step=30, speed="60 deg/s"),
+        inputs=lw.Input(link="lever", from_=0, to=90, step=30, speed="60 deg/s"),
         loads=[lw.Load(link="lever", torque="-20*(t < 0.9) - 3*lever.velocity*(lever >= 45)")],
     )
     efforts = np.asarray(lever.forces()["lever.effort"])
@@ -428,7 +428,7 @@ def test_both_sides_of_a_switch_are_known_between_rows() -> None:
         length="m",
         points={"O": (0, 0), "A": (0.03, 0)},
         links={"ground": ["O"], "crank": ["O", "A"]},
-        inputs=lw.Input(link="crank", start=0, stop=360, step=5, speed="150 rpm"),
+        inputs=lw.Input(link="crank", from_=0, to=360, step=5, speed="150 rpm"),
         loads=[lw.Load(link="crank", torque="-(100 + 20000*(crank > 100.1)*(crank < 100.9))")],
     )
     found = rotor.forces()
@@ -452,7 +452,7 @@ def test_the_gas_of_an_engine_shakes_no_ground() -> None:
         links={"ground": ["O", "T"], "crank": ["O", "A"], "rod": ["A", "B"], "piston": ["B"]},
         sliders=[lw.Slider(name="d", link="piston", points=("B",), on="ground", line=("O", "T"))],
         masses={"piston": lw.Mass(mass=1)},
-        inputs=lw.Input(link="crank", start=0, stop=360, step=45, speed="100 rad/s"),
+        inputs=lw.Input(link="crank", from_=0, to=360, step=45, speed="100 rad/s"),
     )
     gas = "1000*(d < 0.2)"
     piston = lw.Load(point="B", link="piston", force=(f"-{gas}", 0))

@@ -42,7 +42,7 @@ def _here(mechanism: lw.Mechanism) -> lw.forces.Reactions:
 
 def test_the_energy_rate_is_the_slope_of_the_energy() -> None:
     mechanism = loaded(lw.example("four-bar"), seed=3)
-    motion = mechanism.sweep(start=0, stop=2, step=0.01, certify=False)
+    motion = mechanism.sweep(from_=0, to=2, step=0.01, certify=False)
     found = mechanism.forces(motion=motion)
     energy = np.add(found["kinetic_energy"], found["stored_energy"])
     slope = (energy[2:] - energy[:-2]) / (2.0 * 0.01 / 2.0)  # at 2 deg/s

@@ -65,4 +65,4 @@ def test_every_place_that_takes_a_number_refuses_it(given: object, told: str) ->
     if not isinstance(given, str):  # a text is a formula
         refusal("dimensions.r ", lambda: engine.with_dimensions(r=given).model)
         if given is not None:
-            refusal("input.from ", lambda: engine.sweep(start=given))
+            refusal("input.from ", lambda: engine.sweep(from_=given))

@@ -114,7 +114,7 @@ def test_whole_turns_of_the_input_count_where_they_are_told() -> None:
         loops={"1": "x + i*y = r*e^(i*0.5*t)"},
         dimensions={"r": 2.0},
         guess={"t": 0, "x": 2.0, "y": 0.0},
-        inputs=lw.Input(variable="t", start=0, stop=90, step=30),
+        inputs=lw.Input(variable="t", from_=0, to=90, step=30),
     ).model
     turns = np.zeros((1, DESIGNS), dtype=np.int32)
     turns[0, 1::2] = 1

@@ -24,7 +24,7 @@ def xy(**places: complex) -> dict[str, tuple[float, float]]:
 
 
 def _turn(link: str, stop: float = 360, step: float = 6) -> tuple[lw.Input, ...]:
-    return (lw.Input(link=link, start=0, stop=stop, step=step),)
+    return (lw.Input(link=link, from_=0, to=stop, step=step),)
 
 
 def _cis(degrees: float) -> complex:
@@ -207,7 +207,7 @@ def rack(rng: Rng) -> lw.Mechanism:
         },
         sliders=(lw.Slider(name="s", link="rack", points=("R",), on="ground", line=("S", "T")),),
         racks=(lw.Rack(name="mesh", pinion="pinion", center="O", slider="s", radius=radius),),
-        inputs=(lw.Input(link="pinion", start=-50, stop=50, step=2),),
+        inputs=(lw.Input(link="pinion", from_=-50, to=50, step=2),),
     )
 
 

@@ -30,7 +30,7 @@ def _four_bar(bar: FourBar, theta: float, side: int, tip: complex) -> lw.Mechani
     return lw.linkage(
         points=points | {"P": (p.real, p.imag)},
         links=_LINKS,
-        inputs=(lw.Input(link="crank", start=0, stop=360, step=1, speed="2 rad/s"),),
+        inputs=(lw.Input(link="crank", from_=0, to=360, step=1, speed="2 rad/s"),),
         outputs={"mu": "rocker - coupler", "reach": "hypot(P.x, P.y)", "twice": "2*P.x*P.y"},
         trace=("P",),
     )
@@ -72,7 +72,7 @@ def _random_slider_crank(seed: int) -> lw.Mechanism:
             lw.Slider(name="s", link="block", points=("B",), on="ground", line=("S", "T"),
                       offset=offset),
         ),
-        inputs=(lw.Input(link="crank", start=0, stop=360, step=1, speed="60 rpm"),),
+        inputs=(lw.Input(link="crank", from_=0, to=360, step=1, speed="60 rpm"),),
     )  # fmt: skip
 
 

@@ -87,7 +87,7 @@ def test_the_scaled_mechanism_has_the_same_angles(kind: str, seed: int, factor: 
 def test_the_reversed_sweep_retraces(kind: str, seed: int) -> None:
     forth = motion_of(kind, seed)
     (values,) = forth.inputs.values()
-    back = contact(kind, seed).sweep(start=values[-1], stop=values[0], step=values[0] - values[1])
+    back = contact(kind, seed).sweep(from_=values[-1], to=values[0], step=values[0] - values[1])
     assert back.status == forth.status[::-1]
     for one, other in zip(series_of(forth), series_of(back), strict=True):
         scale = max(1.0, float(np.nanmax(np.abs(one.value))))
@@ -105,7 +105,7 @@ def test_derivatives_are_the_slopes_of_the_sweep(kind: str, seed: int, part: flo
     (values,) = motion_of(kind, seed).inputs.values()
     middle = float(values[0] + part * (values[-1] - values[0]))
     h = 0.01  # degrees
-    window = mechanism.sweep(start=middle - h, stop=middle + h, step=h)
+    window = mechanism.sweep(from_=middle - h, to=middle + h, step=h)
     assert window.found.all()
     steps = np.radians(h)
     for series in series_of(window):

@@ -193,13 +193,13 @@ def _gap(position: lw.Position, one: str, two: str) -> float:
 def test_a_driven_link_that_becomes_ground_is_driven_against_the_other_way_round() -> None:
     bar = lw.example("four-bar")
     fixed = bar.inversion("crank").description
-    turned = lw.Input(link="frame", start=0, stop=-360, step=-1, speed=-math.degrees(25))
+    turned = lw.Input(link="frame", from_=0, to=-360, step=-1, speed=-math.degrees(25))
     assert fixed.inputs == (turned,)
     assert bar.inversion("coupler").description.inputs == (
-        lw.Input(link="crank", relative_to="frame", start=0, stop=360, step=1, speed="25 rad/s"),
+        lw.Input(link="crank", relative_to="frame", from_=0, to=360, step=1, speed="25 rad/s"),
     )
-    chosen = bar.inversion("crank", input=lw.Input(link="coupler", start=0, stop=10))
-    assert chosen.description.inputs == (lw.Input(link="coupler", start=0, stop=10),)
+    chosen = bar.inversion("crank", input=lw.Input(link="coupler", from_=0, to=10))
+    assert chosen.description.inputs == (lw.Input(link="coupler", from_=0, to=10),)
 
 
 def test_a_sliding_block_as_ground_keeps_the_displacement() -> None:
@@ -317,10 +317,10 @@ def test_a_table_that_an_inversion_does_not_know_is_refused() -> None:
 def test_another_input_by_one_call() -> None:
     bar = lw.example("four-bar")
     position = bar.solve(at=60)
-    other = bar.driven_by(link="rocker", start=80, stop=100)
+    other = bar.driven_by(link="rocker", from_=80, to=100)
     assert [v.name for v in other.loop_equations.inputs] == ["rocker"]
     assert other.solve(at=position["rocker"])["crank"] == pytest.approx(60, abs=1e-10)
-    loops = lw.example("crank-slider").driven_by(variable="d", start=120, stop=130, step=1)
+    loops = lw.example("crank-slider").driven_by(variable="d", from_=120, to=130, step=1)
     assert loops.solve(at=125)["d"] == 125
 
 

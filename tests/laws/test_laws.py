@@ -95,12 +95,12 @@ def along(name: str, start: float, stop: float, step: float) -> lw.Motion:
     mechanism, motion = mechanism_of(name), motion_of(name)
     given = [values[motion.asked] for values in motion.inputs.values()]
     if len(given) == 1:
-        return mechanism.sweep(start=start, stop=stop, step=step)
+        return mechanism.sweep(from_=start, to=stop, step=step)
     inputs = []
     for which, values in zip(mechanism.description.inputs, given, strict=True):
         rate = (values[1] - values[0]) / (given[0][1] - given[0][0])
         first, last = (values[0] + rate * (at - given[0][0]) for at in (start, stop))
-        inputs.append(replace(which, start=first, stop=last, step=(step * rate) or None))
+        inputs.append(replace(which, from_=first, to=last, step=(step * rate) or None))
     return mechanism.changed(inputs=tuple(inputs)).sweep()
 
 

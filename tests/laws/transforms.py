@@ -166,7 +166,7 @@ def _inputs(
         else:
             shift = turn / unit if absolute else 0.0
             start, stop, step = sign * start + shift, sign * stop + shift, sign * step
-        found.append(replace(which, start=start, stop=stop, step=None if held else step))
+        found.append(replace(which, from_=start, to=stop, step=None if held else step))
     return tuple(found)
 
 

@@ -48,7 +48,7 @@ def test_galloway_turns_once_for_two_turns_of_the_crank() -> None:
 
     O4 A = 2 sin(φ/2), its sign included, stands at the angle 90° + φ/2.
     """
-    both = lw.example("galloway").sweep(start=5, stop=715, step=10, change_points="straight")
+    both = lw.example("galloway").sweep(from_=5, to=715, step=10, change_points="straight")
     for motion in (motion_of("galloway"), both):
         half = degrees(motion, "crank") / 2
         expected = math.pi / 2 + half - np.arccos(np.sin(half) / 2)

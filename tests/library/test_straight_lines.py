@@ -119,6 +119,6 @@ def test_hoeken_stays_between_4_and_4_009754_for_half_a_turn() -> None:
     same(motion.trace("P"), 2 * b - a, 5)
     straight = motion.trace("P").imag[90:271]
     assert straight.min() >= 4 - 1e-12
-    limits = lw.example("hoeken").sweep(start=90, stop=270, limits_of=["P.y"]).output_limits
+    limits = lw.example("hoeken").sweep(from_=90, to=270, limits_of=["P.y"]).output_limits
     highest = max(limit.value for limit in limits)
     assert highest == pytest.approx(4.009754, abs=5e-7)

@@ -218,7 +218,7 @@ def test_a_chain_is_read_with_every_kind_of_joint() -> None:
         links={"ground": ("O", "M", "S", "T"), "boom": ("O", "N"), "rod": ("N", "H")},
         slots=[lw.Slot(name="y", point="H", on="ground", line=("S", "T"))],
         cylinders=[lw.Cylinder(name="ram", between=("M", "N"))],
-        inputs=lw.Input(cylinder="ram", start=1.2, stop=2.0, step=0.1),
+        inputs=lw.Input(cylinder="ram", from_=1.2, to=2.0, step=0.1),
     )
     chain = Chain.of(described_as(Linkage, mechanism))
     assert chain.links == ("ground", "boom", "rod", "ram barrel", "ram rod")

@@ -109,7 +109,7 @@ def _bar() -> lw.Mechanism:
         points={"O": (0, 0), "G": (90, 0), **{p: (z.real, z.imag) for p, z in SKETCH.items()}},
         links={"ground": ("O", "G"), "a": ("O", "A"), "b": ("A", "B", "P", "Q"), "c": ("G", "B")},
         lengths={f"{a} {b}": x for a, b, x in SIDES},
-        inputs=lw.Input(link="a", start=60, stop=80, step=10),
+        inputs=lw.Input(link="a", from_=60, to=80, step=10),
     )
 
 

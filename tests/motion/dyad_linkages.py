@@ -21,7 +21,7 @@ def dyad_linkage(seed: int) -> lw.Mechanism:
         links=made.links,
         sliders=made.sliders,
         slots=made.slots,
-        inputs=lw.Input(link="crank", start=0, stop=10, step=1),
+        inputs=lw.Input(link="crank", from_=0, to=10, step=1),
     )
 
 

@@ -259,7 +259,7 @@ def test_a_pivoted_cylinder_makes_it_an_oscillating_or_rotary_cylinder() -> None
             links={"ground": ("O", "C"), "crank": ("O", "A")},
             lengths={"O A": crank},
             cylinders=[lw.Cylinder(name="ram", between=("C", "A"))],
-            inputs=lw.Input(cylinder="ram", start=1.5, stop=2.5, step=0.1),
+            inputs=lw.Input(cylinder="ram", from_=1.5, to=2.5, step=0.1),
         )
         found = _classified(mechanism)
         assert found.loop is not None
@@ -352,7 +352,7 @@ def _tangent_drive() -> lw.Mechanism:
             lw.Slider(name="s", link="one", points=("B",), on="arm", line=("O", "N")),
             lw.Slider(name="t", link="two", points=("B",), on="ground", line=("S", "T")),
         ],
-        inputs=lw.Input(link="arm", start=20, stop=60),
+        inputs=lw.Input(link="arm", from_=20, to=60),
     )
 
 

@@ -24,7 +24,7 @@ from tests.thinned import thinned
 
 def looped(loops: dict[str, str], **guess: float) -> lw.Mechanism:
     """Loops driven by q."""
-    drive = lw.Input(variable="q", start=0, stop=360, step=1)
+    drive = lw.Input(variable="q", from_=0, to=360, step=1)
     return lw.loops(name="loops", loops=loops, guess={"q": 60, **guess}, inputs=(drive,))
 
 
@@ -160,7 +160,7 @@ def _platform(ground: list[complex], legs: list[float], ends: list[complex]) -> 
             "2": f"l1*e^(i*t1) + {b3}*e^(i*p) - l3*e^(i*t3) - {x3} = 0",
         },
         guess={"l1": legs[0], "t1": 60, "t2": 60, "t3": 60, "p": 0},
-        inputs=(lw.Input(variable="l1", start=legs[0], stop=legs[0] + 1, step=1),),
+        inputs=(lw.Input(variable="l1", from_=legs[0], to=legs[0] + 1, step=1),),
     )
 
 

@@ -29,7 +29,7 @@ def test_only_where_a_turn_changes_nothing_the_input_turns_freely(kind: str) -> 
     assert turns_freely(mechanism.model) is FREE[kind]
     if kind == "rack":  # which has a dead point before one turn
         return
-    ends = mechanism.sweep(start=0, stop=360, step=360)
+    ends = mechanism.sweep(from_=0, to=360, step=360)
     assert ends.found.all()
     first, last = ends.q
     turning = mechanism.model.compiled.table.is_angle[: len(first)]
@@ -177,7 +177,7 @@ def test_a_cylinder_through_its_own_end_stops_at_a_named_place() -> None:
         links={"ground": ("O", "S", "T"), "block": ("A",)},
         sliders=(lw.Slider(name="s", link="block", points=("A",), on="ground", line=("S", "T")),),
         cylinders=(lw.Cylinder(name="c", between=("O", "A")),),
-        inputs=(lw.Input(slider="s", start=60, stop=40, step=-1),),
+        inputs=(lw.Input(slider="s", from_=60, to=40, step=-1),),
     )
     motion = mechanism.sweep()
     (limit,) = motion.limits
@@ -205,14 +205,14 @@ def test_the_follower_can_drive_the_cam_where_its_law_rises() -> None:
             inputs=(which,),
         )  # fmt: skip
 
-    back = mechanism(lw.Input(slider="s", start=40.5, stop=49.5, step=0.5)).sweep()
+    back = mechanism(lw.Input(slider="s", from_=40.5, to=49.5, step=0.5)).sweep()
     assert back.certified.all()
     assert np.ptp(back["cam"]) > 50
     forth = mechanism(lw.Input(link="cam"))
     for s, cam in zip(back.inputs["s"], back["cam"], strict=True):
         assert forth.solve(at=float(cam))["s"] == pytest.approx(s, rel=0, abs=1e-10)
     # in a dwell nothing can drive it: at the top of the rise the motion ends
-    ended = mechanism(lw.Input(slider="s", start=45, stop=55, step=0.5)).sweep()
+    ended = mechanism(lw.Input(slider="s", from_=45, to=55, step=0.5)).sweep()
     (limit,) = ended.limits
     assert limit.kind is lw.core.results.LimitKind.DEAD_POINT
     assert limit.input == pytest.approx(10 + math.sqrt(40**2 - 1), rel=0, abs=1e-6)

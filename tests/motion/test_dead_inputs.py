@@ -26,7 +26,7 @@ def looped(
     return lw.loops(
         loops={str(k): text for k, text in enumerate(loops)},
         guess=guess,
-        inputs=lw.Input(variable="t", start=start, stop=stop, step=step),
+        inputs=lw.Input(variable="t", from_=start, to=stop, step=step),
     )
 
 
@@ -232,8 +232,8 @@ def test_lengths_that_run_to_infinity_are_listed_apart() -> None:
 def test_inputs_in_lock_step_count_as_one() -> None:
     """A five-bar whose cranks turn together is a four-bar with a turning frame."""
     both = (
-        lw.Input(variable="t", start=60, stop=420, step=10),
-        lw.Input(variable="u", start=100, stop=460, step=10),
+        lw.Input(variable="t", from_=60, to=420, step=10),
+        lw.Input(variable="u", from_=100, to=460, step=10),
     )
     text = "e^(i*t) + 3*e^(i*p) = 4 + 1.5*e^(i*u) + 1.7*e^(i*q)"
     five = lw.loops(loops={"1": text}, guess={"t": 60, "u": 100, "p": 30, "q": 100}, inputs=both)

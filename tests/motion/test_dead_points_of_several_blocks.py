@@ -54,7 +54,7 @@ def copies(
         points=points,
         links=links,
         lengths=lengths,
-        inputs=lw.Input(link="crank", start=0, stop=stop, step=step),
+        inputs=lw.Input(link="crank", from_=0, to=stop, step=step),
     )
 
 
@@ -117,7 +117,7 @@ def parallelogram_with_dyad(locks: float) -> lw.Mechanism:
             "rocker": ["P", "C"], "first": ["A", "E"], "second": ["Q", "E"],
         },
         lengths={"O A": A, "A C": D, "P C": A},
-        inputs=lw.Input(link="crank", start=0, stop=360, step=5),
+        inputs=lw.Input(link="crank", from_=0, to=360, step=5),
     )  # fmt: skip
 
 

@@ -19,7 +19,7 @@ from linkwork.core.textfile import write_text
 def _driven(law: Any, name: str = "four-bar", **fields: Any) -> lw.Mechanism:
     """A mechanism of the library whose input has a law."""
     bar = lw.example(name)
-    own = replace(bar.description.inputs[0], start=None, stop=None, step=None, speed=None)
+    own = replace(bar.description.inputs[0], from_=None, to=None, step=None, speed=None)
     return bar.changed(inputs=replace(own, law=law, **fields))
 
 
@@ -74,7 +74,7 @@ def test_a_ramp_goes_on_from_the_speed_of_the_segment_before() -> None:
 
 
 def test_positions_and_rates_are_those_of_the_input_at_its_value_and_rate() -> None:
-    motion = _driven("50 + 40*sin(360*t) - 8*t^2", stop=1, step=0.05).sweep()
+    motion = _driven("50 + 40*sin(360*t) - 8*t^2", to=1, step=0.05).sweep()
     t = motion["t"]
     angle = 50.0 + 40.0 * np.sin(2 * np.pi * t) - 8 * t**2
     rate = np.radians(40.0 * 2 * np.pi * np.cos(2 * np.pi * t) - 16 * t)
@@ -95,7 +95,7 @@ def test_positions_and_rates_are_those_of_the_input_at_its_value_and_rate() -> N
 def test_inputs_have_laws_of_their_own() -> None:
     robot = lw.example("five-bar-robot")
     left, right = robot.description.inputs
-    bare: dict[str, Any] = {"start": None, "stop": None, "step": None}
+    bare: dict[str, Any] = {"from_": None, "to": None, "step": None}
     moved = robot.changed(
         inputs=[
             replace(left, **bare, law=(lw.LawSegment(law="3-4-5", over=1, by=-20),)),
@@ -200,7 +200,7 @@ def test_constant_speed_by_a_law_gives_the_forces_of_that_speed() -> None:
     law = (lw.LawSegment(law="constant", over=0.5, by=360),)
     timed = press.changed(inputs=lw.Input(link="crank", begin=90, law=law, step=0.05)).forces()
     plain = press.changed(
-        inputs=lw.Input(link="crank", start=90, stop=450, step=36, speed=720.0)
+        inputs=lw.Input(link="crank", from_=90, to=450, step=36, speed=720.0)
     ).forces()
     for name in ("crank.effort", "A.force.x", "C.force.y", "power", "shaking.moment"):
         size = np.abs(plain[name]).max()

@@ -36,7 +36,7 @@ def four_bar(bar: FourBar, at: float, side: int = 1, **table: Any) -> lw.Mechani
             "rocker": ("O4", "B"),
         },
         lengths={"O2 A": bar.r2, "A B": bar.r3, "O4 B": bar.r4, "O2 O4": bar.r1},
-        inputs=lw.Input(link="crank", **({"start": 0, "stop": 360, "step": 1} | table)),
+        inputs=lw.Input(link="crank", **({"from_": 0, "to": 360, "step": 1} | table)),
     )
 
 
@@ -116,7 +116,7 @@ def test_the_toggle_and_the_limited_rapier_have_their_known_dead_points() -> Non
 
 
 def test_a_falling_table_has_its_limit_rows_in_falling_order() -> None:
-    motion = four_bar(FOLDING, 90, start=360, stop=0, step=-10).sweep()
+    motion = four_bar(FOLDING, 90, from_=360, to=0, step=-10).sweep()
     assert len(motion) == 39
     assert np.all(np.diff(motion["crank"]) < 0)
     rows = limit_rows(motion, "dead point")
@@ -126,7 +126,7 @@ def test_a_falling_table_has_its_limit_rows_in_falling_order() -> None:
 
 
 def test_a_row_asked_for_at_a_dead_point_is_its_row() -> None:
-    motion = four_bar(FOLDING, 90, start=DEAD, stop=DEAD + 90, step=30).sweep()
+    motion = four_bar(FOLDING, 90, from_=DEAD, to=DEAD + 90, step=30).sweep()
     assert len(motion) == 4
     assert not motion.added.any()
     assert motion.limit == ("dead point", "", "", "")
@@ -136,9 +136,9 @@ def test_a_row_asked_for_at_a_dead_point_is_its_row() -> None:
 
 
 def test_a_limit_outside_of_the_table_adds_no_row() -> None:
-    motion = four_bar(FOLDING, 90, start=60, stop=120, step=10).sweep()
+    motion = four_bar(FOLDING, 90, from_=60, to=120, step=10).sweep()
     assert (len(motion), motion.limits) == (7, ())
-    beyond = four_bar(FOLDING, 90, start=0, stop=40, step=10).sweep()
+    beyond = four_bar(FOLDING, 90, from_=0, to=40, step=10).sweep()
     assert not beyond.found.any()
     assert set(beyond.status) == {lw.Status.OUT_OF_REACH}
     assert len(beyond) == 5
@@ -146,7 +146,7 @@ def test_a_limit_outside_of_the_table_adds_no_row() -> None:
 
 
 def test_a_limit_a_whole_turn_away_has_a_row_in_the_table() -> None:
-    motion = four_bar(FOLDING, 90, start=380, stop=720, step=10).sweep()
+    motion = four_bar(FOLDING, 90, from_=380, to=720, step=10).sweep()
     rows = limit_rows(motion, "dead point")
     assert motion["crank"][rows] == pytest.approx([360 + DEAD, 720 - DEAD], abs=TINY)
     # what the table has between them is found, and nothing else
@@ -231,7 +231,7 @@ def test_two_dead_points_at_one_input_value_are_both_told() -> None:
     mechanism = lw.loops(
         loops={"1": "2*e^(i*t) + 1.9*e^(i*p) = s"},
         guess={"t": 20, "p": -21, "s": 3.6},
-        inputs=lw.Input(variable="t", start=-90, stop=90, step=5),
+        inputs=lw.Input(variable="t", from_=-90, to=90, step=5),
     )
     motion = mechanism.sweep(through=True)
     assert motion.circuit is CircuitEnd.CLOSED
@@ -243,7 +243,7 @@ def test_a_runaway_circuit_is_told() -> None:
     mechanism = lw.loops(
         loops={"1": "s*e^(i*t) = 1 + i*y"},
         guess={"t": 20, "s": 1.06, "y": 0.36},
-        inputs=lw.Input(variable="t", start=0, stop=40, step=5),
+        inputs=lw.Input(variable="t", from_=0, to=40, step=5),
     )
     motion = mechanism.sweep(through=True)
     assert motion.circuit is CircuitEnd.RUNS_TO_INFINITY
@@ -447,7 +447,7 @@ def test_extremes_beside_a_dead_point_are_found_on_every_branch(side: int) -> No
             "coupler": ("A", "B", "P"),
             "rocker": ("O4", "B"),
         },
-        inputs=lw.Input(link="crank", start=0, stop=360, step=10),
+        inputs=lw.Input(link="crank", from_=0, to=360, step=10),
     ).sweep(through=True, limits_of=["P.x"])
     assert len(motion.output_limits) == 4
     names = {limit: motion.branch[row] for row, limit in enumerate(motion.limit) if limit}
@@ -518,7 +518,7 @@ def test_what_turns_back_together_with_the_input_has_its_extreme_at_the_dead_poi
 
 def test_limits_are_named_by_the_inputs_of_their_rows() -> None:
     for start in (0, 360, -720):
-        table = {"start": start, "stop": start + 360, "step": 10}
+        table = {"from_": start, "to": start + 360, "step": 10}
         motion = four_bar(FOLDING, 90, **table).sweep(through=True, limits_of=["coupler"])
         rows: dict[str, set[float]] = {limit: set() for limit in motion.limit}
         for limit, value in zip(motion.limit, motion["crank"], strict=True):
@@ -535,10 +535,10 @@ def test_limits_are_named_by_the_inputs_of_their_rows() -> None:
 
 def test_an_extreme_is_told_once_although_the_track_turns_twice() -> None:
     bar = FourBar(4.0, 2.0, 5.0, 3.5)
-    motion = four_bar(bar, 90, start=400, stop=760, step=10).sweep(limits_of=["rocker"])
+    motion = four_bar(bar, 90, from_=400, to=760, step=10).sweep(limits_of=["rocker"])
     assert len(motion.output_limits) == 2
     assert motion.added.sum() == 2
-    short = four_bar(bar, 90, start=100, stop=110, step=1).sweep(limits_of=["rocker"])
+    short = four_bar(bar, 90, from_=100, to=110, step=1).sweep(limits_of=["rocker"])
     assert short.output_limits == ()
 
 
@@ -566,8 +566,8 @@ def test_several_inputs_have_limit_rows_in_lock_step() -> None:
         dimensions={"r": 1.0, "l": 1.2, "g": 2.5},
         guess={"a": 60, "b": 120, "p": 30, "q": 130},
         inputs=(
-            lw.Input(variable="a", start=60, stop=260, step=5),
-            lw.Input(variable="b", start=120, stop=20, step=-2.5),
+            lw.Input(variable="a", from_=60, to=260, step=5),
+            lw.Input(variable="b", from_=120, to=20, step=-2.5),
         ),
     )
     motion = mechanism.sweep(through=True, limits_of=["p"])
@@ -583,7 +583,7 @@ def test_plain_equations_have_dead_points_with_proofs() -> None:
     mechanism = lw.plain_equations(
         equations={"1": "x^2 + y^2 = 4", "2": "y = t"},
         guess={"x": 1.9, "y": 0.5, "t": 0.5},
-        inputs=lw.Input(variable="t", start=-3, stop=3, step=0.5),
+        inputs=lw.Input(variable="t", from_=-3, to=3, step=0.5),
     )
     motion = mechanism.sweep(through=True, limits_of=["x"])
     assert [limit.input for limit in motion.limits] == pytest.approx([-2, 2], abs=1e-12)
@@ -601,7 +601,7 @@ def test_a_slider_as_input_turns_back_at_its_ends() -> None:
     mechanism = lw.loops(
         loops={"1": "e^(i*t) + 3*e^(i*p) = s"},
         guess={"t": 60, "p": -17, "s": 3.3},
-        inputs=lw.Input(variable="s", start=1, stop=5, step=0.25),
+        inputs=lw.Input(variable="s", from_=1, to=5, step=0.25),
     )
     motion = mechanism.sweep(through=True)
     assert [limit.input for limit in motion.limits] == [2.0, 4.0]

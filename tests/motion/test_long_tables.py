@@ -22,7 +22,7 @@ def test_rows_of_a_long_table_are_those_of_a_short_one(name: str, certify: bool)
     (own,) = mechanism.description.inputs
     asked = mechanism.model.rows_in_file_units[:, 0]
     step = float(asked[1] - asked[0]) / EVERY
-    longer = replace(own, start=float(asked[0]), stop=float(asked[-1]), step=step)
+    longer = replace(own, from_=float(asked[0]), to=float(asked[-1]), step=step)
     short = mechanism.sweep(certify=certify)
     long = mechanism.changed(inputs=(longer,)).sweep(certify=certify)
     (values,), (others,) = short.inputs.values(), long.inputs.values()

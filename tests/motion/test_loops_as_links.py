@@ -152,7 +152,7 @@ def _loops(*equations: str, unknowns: str, driven: str, **what: Any) -> lw.Mecha
         angle="rad",
         loops={f"L{k}": text for k, text in enumerate(equations, 1)},
         guess=guess,
-        inputs=lw.Input(variable=driven, start=0.5, stop=1.0, step=0.1),
+        inputs=lw.Input(variable=driven, from_=0.5, to=1.0, step=0.1),
         **what,
     )
 

@@ -49,7 +49,7 @@ def test_half_the_box_has_a_quarter_of_the_bend() -> None:
 @pytest.mark.parametrize(("start", "stop", "step"), [(10, 70, 60), (70, 10, -60), (10, 70, 30)])
 def test_boxes_cover_the_interval_between_few_rows(start: float, stop: float, step: float) -> None:
     mechanism = read_example("four-bar")
-    motion = mechanism.sweep(start=start, stop=stop, step=step)
+    motion = mechanism.sweep(from_=start, to=stop, step=step)
     boxes = boxes_of(mechanism.model, motion, variables_of(mechanism.model, motion))
     ends = np.degrees(np.stack(boxes.ends, axis=1))
     ends = ends[np.argsort(ends[:, 0])]

@@ -25,7 +25,7 @@ def dixon(**changed: float) -> lw.Mechanism:
         points=points,
         links=links,
         lengths=changed,
-        inputs=(lw.Input(link="a1b2", start=100, stop=125, step=5),),
+        inputs=(lw.Input(link="a1b2", from_=100, to=125, step=5),),
     )
 
 
@@ -40,7 +40,7 @@ def cranks(places: tuple[float, ...], crank: complex, offset: float = 0.0) -> lw
         links["ground"] += (f"O{k}",)
         links["coupler"] += (f"P{k}",)
         links[f"crank{k}"] = (f"O{k}", f"P{k}")
-    drive = lw.Input(link="crank0", start=10, stop=170, step=10)
+    drive = lw.Input(link="crank0", from_=10, to=170, step=10)
     return lw.linkage(points=points, links=links, inputs=(drive,))
 
 
@@ -133,7 +133,7 @@ def test_rows_that_a_redundant_link_does_not_fit_are_told() -> None:
     shaky = lw.linkage(
         points=points,
         links=links,
-        inputs=(lw.Input(link="first", start=80, stop=100, step=5),),
+        inputs=(lw.Input(link="first", from_=80, to=100, step=5),),
     )
     motion = shaky.sweep()
     assert [status.name for status in motion.status] == [
@@ -166,11 +166,11 @@ def test_a_parallelogram_in_line_has_two_freedoms_there_and_one_beside() -> None
 def test_at_a_change_point_no_way_is_taken_that_a_redundant_link_does_not_fit() -> None:
     """Straight on all cranks stay parallel; turned, the third would have another length."""
     mechanism = lw.example("parallel-cranks")
-    straight = mechanism.sweep(start=0, stop=360, step=20, change_points="straight")
+    straight = mechanism.sweep(from_=0, to=360, step=20, change_points="straight")
     assert straight.found.all()
     assert [limit.passed for limit in straight.limits] == ["", "straight", ""]
     np.testing.assert_allclose(straight["third"], straight["first"], atol=1e-9)
-    turned = mechanism.sweep(start=0, stop=360, step=20, change_points="turn")
+    turned = mechanism.sweep(from_=0, to=360, step=20, change_points="turn")
     assert [(limit.input, limit.passed) for limit in turned.limits] == [(0.0, ""), (180.0, "")]
     beyond = (turned["first"] > 180) & (turned["first"] < 360)
     assert {turned.status[k] for k in np.flatnonzero(beyond)} == {Status.DOES_NOT_FIT}

@@ -27,7 +27,7 @@ def test_rows_whole_turns_away_are_reached_however_far(
         },
         inputs=lw.Input(link="crank"),
     )
-    motion = mechanism.sweep(start=start, stop=stop, step=10)
+    motion = mechanism.sweep(from_=start, to=stop, step=10)
     assert motion.found[motion.asked].sum() == reached
     assert motion.certified[motion.found].all()
     exact = bar.coupler_end(np.radians(motion["crank"]), 1)
@@ -58,7 +58,7 @@ def test_three_dead_points_within_one_degree_are_all_passed() -> None:
     assert limits == pytest.approx([-96.1064795848, -70.6842424005, -70.591779558, -70.591779558])
     assert len(circuit.branches) == 4
     assert all(other.input_range[1] > 0.0 for other in others)
-    motion = mechanism.sweep(start=-90, stop=-75, step=1)
+    motion = mechanism.sweep(from_=-90, to=-75, step=1)
     assert motion.certified.all()
     found = sorted(limit.input for limit in mechanism.sweep(through=True).limits)
     assert found == pytest.approx([limit + 360 for limit in limits])  # as in the table
@@ -69,7 +69,7 @@ def test_rows_that_only_another_branch_of_the_circuit_reaches_say_so() -> None:
     mechanism = lw.loops(
         loops=FOUR_BAR_WITH_DYAD,
         guess={"t": -70.65, "p": -159.7, "q": 211.3, "x": 85.9, "y": 148.2},
-        inputs=lw.Input(variable="t", start=-100, stop=-60, step=1),
+        inputs=lw.Input(variable="t", from_=-100, to=-60, step=1),
     )
     motion = mechanism.sweep(through=True)
     asked = motion["t"][motion.asked]
@@ -89,7 +89,7 @@ def test_a_single_equation_is_followed_through_its_dead_points() -> None:
     circle = lw.plain_equations(
         equations={"F": "x^2 + y^2 - 1 = 0"},
         guess={"x": 1, "y": 0.1},
-        inputs=lw.Input(variable="y", start=-2, stop=2, step=0.125),
+        inputs=lw.Input(variable="y", from_=-2, to=2, step=0.125),
     )
     motion = circle.sweep(through=True)
     assert motion.circuit is lw.CircuitEnd.CLOSED
@@ -126,9 +126,7 @@ def test_straight_through_change_points_every_lap_goes_on_from_the_last(
 ) -> None:
     """Two turns of the crank are one of the follower: in 5 deg of the crank it moves 5 deg most."""
     step = 5 if stop > start else -5
-    motion = lw.example("galloway").sweep(
-        start=start, stop=stop, step=step, change_points="straight"
-    )
+    motion = lw.example("galloway").sweep(from_=start, to=stop, step=step, change_points="straight")
     assert motion.found.all()
     for name in motion.unknowns:
         assert np.abs(np.diff(motion[name])).max() < 5
@@ -142,7 +140,7 @@ def test_straight_through_change_points_every_lap_goes_on_from_the_last(
 
 def test_around_through_a_whole_turn_rows_of_change_points_belong_to_those_beside_them() -> None:
     """Without a way across, every turn repeats the one of the guess, up to its end."""
-    motion = lw.example("galloway").sweep(start=5, stop=720, step=5)
+    motion = lw.example("galloway").sweep(from_=5, to=720, step=5)
     at = {float(x): k for k, x in enumerate(motion["crank"])}
     for name in motion.unknowns:
         assert motion[name][at[360.0]] == pytest.approx(180, abs=1e-9)

@@ -29,7 +29,7 @@ def four_bar(bar: FourBar, degrees: float, step: float = 10) -> lw.Mechanism:
             "p": math.degrees(cmath.phase(tip - a)),
             "q": math.degrees(cmath.phase(tip - bar.r1)),
         },
-        inputs=lw.Input(variable="t", start=0, stop=360, step=step),
+        inputs=lw.Input(variable="t", from_=0, to=360, step=step),
     )
 
 

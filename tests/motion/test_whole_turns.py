@@ -20,7 +20,7 @@ MILLION = 10**6
 
 
 def turned(mechanism: lw.Mechanism, start: float, stop: float, step: float) -> lw.Mechanism:
-    return type(mechanism)(mechanism.description.with_range(start=start, stop=stop, step=step))
+    return type(mechanism)(mechanism.description.with_range(from_=start, to=stop, step=step))
 
 
 def slider_crank(unit: lw.AngleUnit) -> lw.Mechanism:

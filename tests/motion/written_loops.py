@@ -57,7 +57,7 @@ def as_loops(
             slider=None,
             cylinder=None,
             variable=which.drives[1],
-            step=which.step if which.start != which.stop else 1,
+            step=which.step if which.from_ != which.to else 1,
         )
         for which in linkage.inputs
     ]

@@ -181,7 +181,7 @@ def mechanism(bar: FourBar, theta: float, side: int, step: float = 1.0) -> Mecha
             "rocker": ("O4", "B"),
         },
         lengths={"O2 A": bar.r2, "A B": bar.r3, "O4 B": bar.r4},
-        inputs=(Input(link="crank", start=0, stop=360, step=step),),
+        inputs=(Input(link="crank", from_=0, to=360, step=step),),
     )
 
 

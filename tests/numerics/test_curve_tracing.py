@@ -147,7 +147,7 @@ def slider_crank(crank: float, rod: float, offset: float) -> lw.Mechanism:
             "p": math.asin((offset - crank * math.sin(angle)) / rod),
             "s": crank * math.cos(angle) + reach,
         },
-        inputs=lw.Input(variable="t", start=0.0, stop=0.6, step=0.1),
+        inputs=lw.Input(variable="t", from_=0.0, to=0.6, step=0.1),
     )
 
 
@@ -169,7 +169,7 @@ def test_a_slider_in_the_lead_goes_to_and_fro_between_stretched_and_folded(strok
     mechanism = lw.loops(
         loops={"1": "e^(i*t) + 3*e^(i*p) = s"},
         guess={"t": 60, "p": -17, "s": 3.3},
-        inputs=lw.Input(variable="s", start=2.5, stop=3.5, step=0.1),
+        inputs=lw.Input(variable="s", from_=2.5, to=3.5, step=0.1),
     )
     _, found = circuit_of(mechanism, stroke)
     assert found.certified
@@ -216,7 +216,7 @@ def test_six_bars_that_are_one_system_close_with_proof() -> None:
             },
             dimensions=numbers,
             guess={"t": theta, **angle},
-            inputs=lw.Input(variable="t", start=theta - 1, stop=theta + 1, step=0.5),
+            inputs=lw.Input(variable="t", from_=theta - 1, to=theta + 1, step=0.5),
         )
         leads, found = circuit_of(mechanism)
         assert len(mechanism.model.compiled.solver.blocks) == 1
@@ -307,7 +307,7 @@ def test_a_gear_of_nearly_one_to_one_does_not_close_after_one_turn(
         angle="rad",
         loops={"1": f"e^(i*t) + 3*e^(i*p) = s + 0.5*e^(i*{1.0 + more!r}*t)"},
         guess={"t": 1.0, "p": -0.1, "s": 3.0},
-        inputs=lw.Input(variable="t", start=0, stop=6, step=0.5),
+        inputs=lw.Input(variable="t", from_=0, to=6, step=0.5),
     )
     model = mechanism.model
     start = first_position(model, model.start_inputs, NewtonOptions())
@@ -328,7 +328,7 @@ def test_a_gear_with_a_ratio_closes_after_as_many_turns() -> None:
             angle="rad",
             loops={"1": f"e^(i*t) + 3*e^(i*p) = s + 0.5*e^(i*{ratio}*t)"},
             guess={"t": 1.0, "p": -0.1, "s": 3.0},
-            inputs=lw.Input(variable="t", start=0, stop=6, step=0.5),
+            inputs=lw.Input(variable="t", from_=0, to=6, step=0.5),
         )
         _, found = circuit_of(mechanism)
         assert found.certified
@@ -346,7 +346,7 @@ def test_two_dead_points_that_nearly_meet_are_both_seen(apart: float, start: flo
     mechanism = lw.plain_equations(
         equations={"1": f"x^3 - ({d!r})*x = t", "2": "x^2 + y^2 = 1"},
         guess={"x": start, "y": math.sqrt(1.0 - start**2), "t": value},
-        inputs=lw.Input(variable="t", start=value, stop=value + 1, step=0.5),
+        inputs=lw.Input(variable="t", from_=value, to=value + 1, step=0.5),
     )
     _, found = circuit_of(mechanism)
     assert found.curve.end is CircuitEnd.CLOSED
@@ -367,8 +367,8 @@ def test_inputs_in_lock_step_are_followed_together() -> None:
         dimensions={"r": 1.0, "l": 1.2, "g": 2.5},
         guess={"a": 1.0, "b": 2.0, "p": 0.5, "q": 2.3},
         inputs=(
-            lw.Input(variable="a", start=1.0, stop=2.0, step=0.1),
-            lw.Input(variable="b", start=2.0, stop=1.5, step=-0.05),
+            lw.Input(variable="a", from_=1.0, to=2.0, step=0.1),
+            lw.Input(variable="b", from_=2.0, to=1.5, step=-0.05),
         ),
     )
     leads, found = circuit_of(mechanism)
@@ -386,7 +386,7 @@ def test_a_slider_that_runs_away_is_told() -> None:
     mechanism = lw.loops(
         loops={"1": "s*e^(i*t) = 1 + i*y"},
         guess={"t": 20, "s": 1.06, "y": 0.36},
-        inputs=lw.Input(variable="t", start=0, stop=40, step=5),
+        inputs=lw.Input(variable="t", from_=0, to=40, step=5),
     )
     for way in (1.0, -1.0):
         _, found = circuit_of(mechanism, way)

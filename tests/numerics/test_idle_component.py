@@ -17,7 +17,7 @@ ISOSCELES = "2*e^(i*p) + 2*e^(i*q) = s"
 
 
 def _driven(text: str, variable: str, **guess: float) -> lw.Mechanism:
-    driver = lw.Input(variable=variable, start=guess[variable], stop=guess[variable] + 1, step=1)
+    driver = lw.Input(variable=variable, from_=guess[variable], to=guess[variable] + 1, step=1)
     return lw.loops(loops={"1": text}, guess=guess, inputs=driver)
 
 

@@ -168,7 +168,7 @@ def test_a_gear_of_linear_rows_alone_is_the_only_solution() -> None:
         loops={"yoke": "r*e^(i*t) = x + i*y"},
         dimensions={"r": 2.0},
         guess={"t": 30, "x": 1.0, "y": 1.0},
-        inputs=lw.Input(variable="t", start=0, stop=360, step=10),
+        inputs=lw.Input(variable="t", from_=0, to=360, step=10),
     ).sweep()
     assert motion.certified.all()
 
@@ -268,8 +268,8 @@ def test_rows_of_two_inputs_are_proved_at_the_inputs_asked_for() -> None:
         dimensions={"r": 1.0, "l": 2.0, "g": 1.5},
         guess={"a": 1.0, "b": 100.0, "p": 0.7, "q": 2.0},
         inputs=(
-            lw.Input(variable="a", start=1.0, stop=1.1, step=0.0001),
-            lw.Input(variable="b", start=100.0, stop=100.1, step=0.0001),
+            lw.Input(variable="a", from_=1.0, to=1.1, step=0.0001),
+            lw.Input(variable="b", from_=100.0, to=100.1, step=0.0001),
         ),
     ).sweep()
     assert motion.certified.all()
@@ -524,7 +524,7 @@ def test_every_reason_for_a_missing_certificate_is_reached(monkeypatch: pytest.M
     parallelogram = lw.loops(
         loops={"1": "e^(i*t) + 2*e^(i*p) = 2 + e^(i*q)"},
         guess={"t": 60, "p": 0, "q": 60},
-        inputs=lw.Input(variable="t", start=60, stop=210, step=30),
+        inputs=lw.Input(variable="t", from_=60, to=210, step=30),
     ).sweep(change_points="straight")
     reasons += [
         lw.example("four-bar").sweep(certify=False).certification[0],

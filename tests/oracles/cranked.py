@@ -32,5 +32,5 @@ def cranked_truss(
         name=f"Truss {graph} with a crank",
         points={f"J{k}": (float(a), float(b)) for k, (a, b) in enumerate(places)} | {"O": (x, y)},
         links=links | {"ground": ("O", *frame), "crank": ("O", f"J{driven}")},
-        inputs=lw.Input(link="crank", start=0, stop=360, step=10),
+        inputs=lw.Input(link="crank", from_=0, to=360, step=10),
     )

@@ -80,7 +80,7 @@ def train(loops: Sequence[Loop], rows: tuple[float, float, float]) -> lw.Mechani
         angle="rad",
         loops=texts,
         guess=guess,
-        inputs=lw.Input(variable="t0", start=start, stop=stop, step=(stop - start) / count),
+        inputs=lw.Input(variable="t0", from_=start, to=stop, step=(stop - start) / count),
     )
 
 

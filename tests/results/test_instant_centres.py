@@ -95,7 +95,7 @@ def test_the_trammel_rolls_one_of_cardans_circles_in_the_other() -> None:
 
 def test_centrodes_roll_without_slipping() -> None:
     """Between two positions both have the same length of arc."""
-    motion = lw.example("four-bar").sweep(start=40, stop=100, step=0.1)
+    motion = lw.example("four-bar").sweep(from_=40, to=100, step=0.1)
     found = centrodes(motion, "coupler")
     one, other = (np.abs(np.diff(path)) for path in (found.fixed, found.moving))
     # Chords differ from arcs by the third power of the step.
@@ -110,7 +110,7 @@ def test_a_dead_point_has_no_instant_centres() -> None:
 
 
 def test_ground_and_unknown_links_have_no_centrodes() -> None:
-    motion = lw.example("four-bar").sweep(start=0, stop=10, step=5)
+    motion = lw.example("four-bar").sweep(from_=0, to=10, step=5)
     with pytest.raises(InputError, match="the ground has no centrodes"):
         centrodes(motion, "ground")
     with pytest.raises(UnknownNameError, match='there is no link "arm" \\(links: ground, crank'):
@@ -118,7 +118,7 @@ def test_ground_and_unknown_links_have_no_centrodes() -> None:
 
 
 def test_a_link_that_only_slides_has_no_centrodes() -> None:
-    motion = lw.example("slider-crank").sweep(start=0, stop=10, step=5)
+    motion = lw.example("slider-crank").sweep(from_=0, to=10, step=5)
     with pytest.raises(InputError, match='"block" does not turn'):
         centrodes(motion, "block")
 

@@ -20,9 +20,7 @@ def _blocks(language: str) -> list[str]:
 
 
 def test_both_mechanism_files_of_the_readme_are_the_same_four_bar() -> None:
-    drawn, written = (
-        lw.loads(block).sweep(start=0, stop=360, step=30) for block in _blocks("toml")
-    )
+    drawn, written = (lw.loads(block).sweep(from_=0, to=360, step=30) for block in _blocks("toml"))
     assert drawn.certified.all()
     assert written.certified.all()
     assert drawn["rocker"] == pytest.approx(written["θ4"], abs=1e-9)

@@ -13,7 +13,7 @@ import linkwork as lw
 @pytest.mark.parametrize("name", ["θ13", "theta13", "ϑ13", "θ₁₃"])
 def test_a_greek_name_is_found_in_every_spelling(name: str) -> None:
     rapier = lw.example("rapier-drive")
-    position, motion = rapier.solve(), rapier.sweep(stop=3)
+    position, motion = rapier.solve(), rapier.sweep(to=3)
     assert position[name] == position.unknowns["θ13"]
     np.testing.assert_array_equal(motion[name], motion.unknowns["θ13"].value)
     assert motion.series(name) is motion.unknowns["θ13"]
@@ -21,7 +21,7 @@ def test_a_greek_name_is_found_in_every_spelling(name: str) -> None:
 
 def test_inputs_and_points_too() -> None:
     rapier = lw.example("rapier-drive")
-    position, motion = rapier.solve(), rapier.sweep(stop=3)
+    position, motion = rapier.solve(), rapier.sweep(to=3)
     assert position["theta12"] == 60
     np.testing.assert_array_equal(motion["theta12"], [0, 1, 2, 3])
     crank = lw.linkage(
@@ -30,7 +30,7 @@ def test_inputs_and_points_too() -> None:
         inputs=lw.Input(link="a"),
     )
     assert crank.solve()["Omega.x"] == crank.solve()["Ω.x"] == pytest.approx(40)
-    turned = crank.sweep(stop=3)
+    turned = crank.sweep(to=3)
     np.testing.assert_array_equal(turned["Omega.y"], turned["Ω.y"])
     np.testing.assert_array_equal(turned.trace("Omega"), turned.trace("Ω"))
     limits = [crank.sweep(limits_of=[name]).output_limits for name in ("Omega.y", "Ω.y")]
@@ -38,7 +38,7 @@ def test_inputs_and_points_too() -> None:
 
 
 def test_a_table_shows_its_size_and_first_columns() -> None:
-    table = lw.example("rapier-drive").sweep(stop=3).table()
+    table = lw.example("rapier-drive").sweep(to=3).table()
     assert repr(table).startswith("<Table of 4 rows over θ12, ")
     assert repr(table).endswith(
         " columns: θ12 [deg], θ13 [deg], θ14 [deg], θ15 [deg], s16 [mm], A0.x [mm], …>"

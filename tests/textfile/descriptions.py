@@ -69,7 +69,7 @@ def ranges(draw: st.DrawFn) -> dict[str, Any]:
     step = draw(st.sampled_from([1, 2, 0.5, -3]))
     shown = draw(st.sampled_from([start, float(start), f"{start} + 0"]))
     speed = draw(st.none() | st.floats(-1e9, 1e9) | st.just("2*3"))
-    return {"start": shown, "stop": start + 11 * step, "step": step, "speed": speed}
+    return {"from_": shown, "to": start + 11 * step, "step": step, "speed": speed}
 
 
 @st.composite

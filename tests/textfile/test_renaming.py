@@ -101,7 +101,7 @@ def test_a_mirrored_mechanism_moves_as_in_a_mirror(name: str) -> None:
     for which in before.description.inputs:
         if which.link or which.joint:
             k = before.description.inputs.index(which)
-            for key, number in (("from", which.start), ("to", which.stop), ("step", which.step)):
+            for key, number in (("from", which.from_), ("to", which.to), ("step", which.step)):
                 if number is not None:
                     edits.put(("input", k, key), -before.description.numbers(number))
     old, new = before.sweep(), lw.loads(edits.text).sweep()

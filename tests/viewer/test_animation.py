@@ -78,7 +78,7 @@ def test_mp4_is_written_by_ffmpeg(motion: lw.Motion) -> None:
 
 
 def test_an_open_motion_is_shown_to_and_fro() -> None:
-    part = lw.example("four-bar").sweep(stop=90, certify=False)
+    part = lw.example("four-bar").sweep(to=90, certify=False)
     film = Image.open(io.BytesIO(animation({"motion": part}, "gif", options=_FEW)))
     assert frames_of(film) == 10  # six there, four back
 
@@ -135,7 +135,7 @@ def test_a_mechanism_that_never_closes_has_nothing_to_show(motion: lw.Motion) ->
 
 
 def test_a_motion_writes_itself(tmp_path: Path) -> None:
-    motion = lw.example("four-bar").sweep(stop=20)
+    motion = lw.example("four-bar").sweep(to=20)
     motion.animate(tmp_path / "part.html")
     motion.animate(str(tmp_path / "part.gif"), options=FilmOptions(rows=3, dpi=20))
     page = (tmp_path / "part.html").read_bytes()

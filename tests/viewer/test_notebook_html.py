@@ -118,7 +118,7 @@ def test_names_are_text_wherever_they_are_shown() -> None:
         links={"ground": ["O", "Q"], "crank": ["O", "A"], "b": ["A", "B"], "c": ["Q", "B"]},
         inputs=lw.Input(link="crank"),
     )
-    found = (hostile, hostile.solve(), hostile.sweep(stop=9), hostile.configurations())
+    found = (hostile, hostile.solve(), hostile.sweep(to=9), hostile.configurations())
     for shown in (*found, hostile.circuits(certify=False)):
         text = shown._repr_html_()
         assert "<script" not in text

@@ -30,7 +30,7 @@ def test_time_runs_forward_where_the_speed_is_against_the_table() -> None:
     order, closed = play_order(motion)
     assert closed
     assert order.tolist() == [0, *range(359, 0, -1)]
-    order, closed = play_order(lw.example("crank-slider").sweep(stop=90))
+    order, closed = play_order(lw.example("crank-slider").sweep(to=90))
     assert not closed
     assert order.tolist() == list(range(90, -1, -1))
 
@@ -43,7 +43,7 @@ def test_where_the_input_falls() -> None:
 
 
 def test_a_part_of_a_turn_is_open() -> None:
-    order, closed = play_order(lw.example("jansen-leg").sweep(stop=90))
+    order, closed = play_order(lw.example("jansen-leg").sweep(to=90))
     assert not closed
     assert order.tolist() == list(range(91))
 

@@ -83,7 +83,7 @@ def test_an_unknown_configuration_is_refused_with_those_that_exist(
 
 
 def test_another_configuration_keeps_the_row_or_takes_the_nearest(limited: lw.Motion) -> None:
-    widget = motions_widget({"part": limited, "start": lw.example("four-bar").sweep(stop=90)})
+    widget = motions_widget({"part": limited, "start": lw.example("four-bar").sweep(to=90)})
     widget.row = int(limited.found.nonzero()[0][-1])
     assert widget.row > 90
     widget.configuration = "start"

@@ -108,11 +108,11 @@ def _ranged(linkage: Linkage, which: Input, sign: float, shift: float, seen: flo
     shift -= linkage.angle.turn * round(there / linkage.angle.turn)
     if sign > 0 and not shift:
         return which
-    start: Number = 0.0 if which.start is None else which.start
-    stop: Number = linkage.angle.turn if which.stop is None else which.stop
+    start: Number = 0.0 if which.from_ is None else which.from_
+    stop: Number = linkage.angle.turn if which.to is None else which.to
     step = None if which.step is None else _shifted(which.step, sign, 0.0)
     return replace(
-        which, start=_shifted(start, sign, shift), stop=_shifted(stop, sign, shift), step=step
+        which, from_=_shifted(start, sign, shift), to=_shifted(stop, sign, shift), step=step
     )
 
 

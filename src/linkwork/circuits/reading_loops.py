@@ -523,7 +523,7 @@ class _Drawing:
         rows = scale * self.loops.rows(which) + begin
         step = float(rows[1] - rows[0]) if len(rows) > 1 else None
         stop = float(rows[-1])
-        return Input(**part, start=float(rows[0]), stop=stop, step=step)
+        return Input(**part, from_=float(rows[0]), to=stop, step=step)
 
     def _shown(self, symbol: str) -> str:
         return next(v.name for v in self.equations.variables if v.symbol == symbol)

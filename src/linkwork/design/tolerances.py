@@ -250,7 +250,7 @@ def _at_one_row(model: Model, position: Position) -> Model:
     """The mechanism with the input of a position as its only row, starting there."""
     description = model.description
     rows = tuple(
-        replace(which, start=position.input[x.name], stop=position.input[x.name], step=1)
+        replace(which, from_=position.input[x.name], to=position.input[x.name], step=1)
         for which, x in zip(description.inputs, model.equations.inputs, strict=True)
     )
     return model_of(replace(description, inputs=rows)).from_position(position)

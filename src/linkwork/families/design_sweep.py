@@ -225,7 +225,7 @@ def with_table(model: Model, base: Model, parts: int = 1) -> Model:
 def _with_plain_range(base: Model, which: Input, parts: int) -> Input:
     rows = base.description.rows(which).tolist()
     step = (rows[-1] - rows[0]) / max(1, parts * (len(rows) - 1))
-    return replace(which, start=rows[0], stop=rows[-1], step=step or None)
+    return replace(which, from_=rows[0], to=rows[-1], step=step or None)
 
 
 def leave_open(designs: Designs, which: IndexArray, found: DesignRows) -> None:

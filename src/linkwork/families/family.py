@@ -74,7 +74,7 @@ def _use_all() -> None:
         points={"O": (0, 0), "A": (35, 20), "B": (146, 66), "C": (100, 0)},
         links={"ground": ("O", "C"), "crank": ("O", "A"), "rod": ("A", "B"), "arm": ("C", "B")},
         lengths={"O A": 40},
-        inputs=(Input(link="crank", start=0, stop=360, step=30),),
+        inputs=(Input(link="crank", from_=0, to=360, step=30),),
     )
     for length in (40.0, 95.0):  # turns around, and does not
         family = family_of(model_of(four_bar), {"O A": np.full(_DESIGNS, length)})

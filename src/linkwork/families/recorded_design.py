@@ -504,7 +504,7 @@ def _told(quantities: Sequence[VariedNumber]) -> str:
 def _has_plain_inputs(description: Description) -> bool:
     """Whether ranges and speeds of inputs do not follow a recorded number."""
     for which in description.inputs:
-        ranges = (which.start, which.stop, which.step)
+        ranges = (which.from_, which.to, which.step)
         known = [description.numbers(number) for number in ranges if number is not None]
         if any(isinstance(number, RecordedNumber) for number in known):
             return False

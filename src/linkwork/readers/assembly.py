@@ -460,7 +460,7 @@ def _add_slide(assembly: Assembly, row: JointRow, joined: list[str]) -> None:
     if row.input:
         assembly.source.leave_out(row.place, "range of the driven slide: it is set to ± a quarter")
         size = abs(assembly.points[line[1]] - assembly.points[line[0]]) / 4.0
-        assembly.inputs.append(Input(slider=name, start=-size, stop=size, step=size / 50.0))
+        assembly.inputs.append(Input(slider=name, from_=-size, to=size, step=size / 50.0))
 
 
 def _point_at(assembly: Assembly, row: JointRow, moving: list[str]) -> str:
@@ -540,7 +540,7 @@ class Drawn:
             self.leave_out(name, "mass")
         for which in linkage.inputs:
             # the driven pin itself can be written
-            table = (which.start, which.stop, which.step)
+            table = (which.from_, which.to, which.step)
             if table != (None, None, None) or which.law is not None:
                 self.leave_out(which.column, "range or law of the input")
 

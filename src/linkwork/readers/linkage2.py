@@ -118,7 +118,7 @@ class _Document:
         throw = self._length(element, "throw", "0")
         if throw > 0:
             start = abs(b - a)
-            which = Input(cylinder=name, start=start, stop=start + throw, step=throw / 100.0)
+            which = Input(cylinder=name, from_=start, to=start + throw, step=throw / 100.0)
             self.assembly.inputs.append(which)
         self.source.leave_out(f"line {element.line}", "strokes per minute of the actuator")
 

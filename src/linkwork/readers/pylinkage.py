@@ -263,7 +263,7 @@ class _Mechanism(_Reading):
         if entry.get("type") == "arc_driver":
             angles = (self.size(entry, key, k) for key in ("arc_start", "arc_end"))
             ends = tuple(None if end is None else math.degrees(end) for end in angles)  # type: ignore[assignment]  # two
-        self.assembly.inputs.append(Input(link=link, start=ends[0], stop=ends[1]))
+        self.assembly.inputs.append(Input(link=link, from_=ends[0], to=ends[1]))
 
     def _slide(self, entry: dict[str, Any], k: int, point: str) -> None:
         axis = entry.get("axis", [1.0, 0.0])

@@ -190,4 +190,4 @@ class _Tree:
             zero = planar.angle(link) - planar.angle(on)
             start, stop = (math.degrees(zero + sign * end) for end in (low, high))
         step = (stop - start) / _ROWS
-        planar.assembly.inputs.append(Input(**drives, start=start, stop=stop, step=step or None))
+        planar.assembly.inputs.append(Input(**drives, from_=start, to=stop, step=step or None))

@@ -214,7 +214,7 @@ def program_command(
     mechanism = read_mechanism(file, changes)
     with progress("sweeping") as tell:
         motion = mechanism.sweep(
-            start=start, stop=stop, step=step, configuration=configuration, progress=tell
+            from_=start, to=stop, step=step, configuration=configuration, progress=tell
         )
     with progress("writing the program"):
         text = code_of(mechanism.model, motion, path)
@@ -366,7 +366,7 @@ def plates_command(
     mechanism = read_mechanism(file, changes)
     with progress("sweeping") as tell:
         motion = mechanism.sweep(
-            start=start, stop=stop, step=step, configuration=configuration, progress=tell
+            from_=start, to=stop, step=step, configuration=configuration, progress=tell
         )
     with progress("choosing layers") as tell:
         stack = stack_of(mechanism.model, motion, options, tell)

@@ -64,7 +64,7 @@ def whole(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 def test_a_store_holds_what_the_family_says(whole: Path) -> None:
     asked = study()
-    bar = lw.example("four-bar").changed(inputs=lw.Input(link="crank", start=0, stop=330, step=30))
+    bar = lw.example("four-bar").changed(inputs=lw.Input(link="crank", from_=0, to=330, step=30))
     motion = bar.family(asked.plan).sweep()
     with warnings.catch_warnings():
         warnings.simplefilter("error")

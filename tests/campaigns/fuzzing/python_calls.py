@@ -24,12 +24,12 @@ _BAR: Mapping[str, Any] = MappingProxyType({
         "ground": ["O2", "O4"], "crank": ["O2", "A"], "coupler": ["A", "B"], "rocker": ["O4", "B"],
     },
     "lengths": {"O2 A": 40, "A B": 120, "O4 B": 80},
-    "inputs": lw.Input(link="crank", start=0, stop=90, step=30),
+    "inputs": lw.Input(link="crank", from_=0, to=90, step=30),
 })  # fmt: skip
 _LOOPS: Mapping[str, Any] = MappingProxyType({
     "loops": {"four-bar": "a*cis(θ2) + b*cis(θ3) = d + c*cis(θ4)"},
     "dimensions": {"a": 40, "b": 120, "c": 80, "d": 100},
-    "inputs": lw.Input(variable="θ2", start=0, stop=90, step=30),
+    "inputs": lw.Input(variable="θ2", from_=0, to=90, step=30),
     "guess": {"θ2": 60, "θ3": 20, "θ4": 65},
 })  # fmt: skip
 _PLAIN: Mapping[str, Any] = MappingProxyType({
@@ -191,7 +191,7 @@ def _odd(
 
 
 def _plausible(rng: np.random.Generator, name: str) -> Any:
-    known = {"start": 0, "stop": 60, "step": 30, "at": 60, "dimensions": {"O2 A": [38.0, 40.0]},
+    known = {"from_": 0, "to": 60, "step": 30, "at": 60, "dimensions": {"O2 A": [38.0, 40.0]},
     "of": {"a": (1, 2)},
              "ranges": {"a": (1, 2)}, "levels": {"a": [1, 2]}, "count": 3, "seed": 1,
              "mechanism": _mechanism(),

@@ -64,7 +64,7 @@ def _solved(rng: np.random.Generator, witness: Witness, mechanism: lw.Mechanism)
     first, step = pick(rng, _RANGES)
     call(
         f"sweep from {first}",
-        lambda: mechanism.sweep(start=first, stop=first + 6 * step, step=step),
+        lambda: mechanism.sweep(from_=first, to=first + 6 * step, step=step),
         SHOWS_PROGRESS,
     )
     if rng.random() < 0.3:

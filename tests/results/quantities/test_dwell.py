@@ -16,7 +16,7 @@ def circle(start: float, stop: float, step: float = 1.0) -> lw.Mechanism:
         loops={"1": "r*e^(i*t) = x + i*y"},
         dimensions={"r": 2.0},
         guess={"t": 30, "x": 1.0, "y": 1.0},
-        inputs=lw.Input(variable="t", start=start, stop=stop, step=step),
+        inputs=lw.Input(variable="t", from_=start, to=stop, step=step),
         outputs={"ramp": "t/9"},
     )
 
@@ -88,7 +88,7 @@ def slider(start: float, stop: float, step: float, **outputs: str) -> lw.Mechani
         loops={"1": "a*e^(i*t) + b*e^(i*q) = s"},
         dimensions={"a": 1.0, "b": 3.0},
         guess={"t": start, "q": 0.0, "s": 3.0},
-        inputs=lw.Input(variable="t", start=start, stop=stop, step=step),
+        inputs=lw.Input(variable="t", from_=start, to=stop, step=step),
         outputs=outputs,
     )
 
@@ -163,7 +163,7 @@ def test_the_longest_of_several_ranges_is_the_same_at_every_step(
             loops={"1": "a*e^(i*t) + b*e^(i*u) = d + c*e^(i*v)"},
             dimensions=dimensions,
             guess={"t": 0.0, "u": turn, "v": 90.0},
-            inputs=lw.Input(variable="t", start=0, stop=360, step=step),
+            inputs=lw.Input(variable="t", from_=0, to=360, step=step),
             outputs={
                 "y": "a*sin(t) + p*sin(u) + q*cos(u)",
                 "w": "hypot(a*cos(t) + p*cos(u) - q*sin(u), a*sin(t) + p*sin(u) + q*cos(u) - 1)",

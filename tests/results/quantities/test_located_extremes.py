@@ -50,7 +50,7 @@ def bar(step: float, **further: object) -> lw.Mechanism:
             "rocker": ["O4", "B"],
         },
         lengths=BAR,
-        inputs=lw.Input(link="crank", start=0, stop=360, step=step, speed="10 rad/s"),
+        inputs=lw.Input(link="crank", from_=0, to=360, step=step, speed="10 rad/s"),
         **further,
     )
 
@@ -256,7 +256,7 @@ def test_a_short_movement_between_two_rows_of_time_is_seen() -> None:
     rests = [lw.LawSegment(law="dwell", over=t) for t in (0.01, 0.9)]
     law = (there, rests[0], back, rests[1])
     coarse, fine = (
-        bar(1.0).changed(inputs=lw.Input(link="crank", law=law, start=0, stop=1, step=step)).sweep()
+        bar(1.0).changed(inputs=lw.Input(link="crank", law=law, from_=0, to=1, step=step)).sweep()
         for step in (0.1, 0.001)
     )
     assert np.ptp(coarse["rocker"]) < 1e-9
@@ -271,7 +271,7 @@ def test_an_extreme_just_before_the_last_row_is_found_by_values_alone() -> None:
     for beyond in (0.05, 0.1, 0.7):
         stop = highest + beyond
         most, less = (
-            fine.sweep(start=stop - 60.0, stop=stop, step=step).value("max(crank.effort)")
+            fine.sweep(from_=stop - 60.0, to=stop, step=step).value("max(crank.effort)")
             for step in (0.1, 10.0)
         )
         assert less == pytest.approx(most, rel=1e-11)

@@ -51,7 +51,7 @@ def test_it_is_infinite_where_the_part_stands_still() -> None:
         loops={"1": "r*e^(i*t) = x + i*y"},
         dimensions={"r": 2.0},
         guess={"t": 30, "x": 1.0, "y": 1.0},
-        inputs=lw.Input(variable="t", start=0, stop=30, step=30),
+        inputs=lw.Input(variable="t", from_=0, to=30, step=30),
     )
     motion = circle.sweep()
     assert motion["x.mechanical_advantage"][0] == np.inf

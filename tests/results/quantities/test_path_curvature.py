@@ -32,7 +32,7 @@ def test_a_straight_path_has_curvature_0_and_no_centre() -> None:
     moving = np.abs(motion["B.x.d1"]) > 1e-6
     assert (motion["B.curvature"][moving] == 0.0).all()
     assert np.isnan(motion["B.centre.x"]).all()
-    trammel = lw.example("elliptic-trammel").sweep(start=1, stop=89)
+    trammel = lw.example("elliptic-trammel").sweep(from_=1, to=89)
     assert (trammel["A.curvature"] == 0.0).all()
     assert np.isnan(trammel["A.centre.y"]).all()
 

@@ -32,7 +32,7 @@ def test_designs_have_it_as_they_have_it_alone() -> None:
 
 
 def test_without_a_whole_turn_or_a_return_there_is_none() -> None:
-    slider = lw.example("slider-crank").sweep(stop=300)
+    slider = lw.example("slider-crank").sweep(to=300)
     assert np.isnan(slider.value("time_ratio(d)"))
     drag = lw.example("drag-link").sweep()
     turning = next(name for name, s in drag.unknowns.items() if abs(s.value[-1] - s.value[0]) > 300)
@@ -70,7 +70,7 @@ def test_rests_are_part_of_no_stroke(law: str, start: float) -> None:
                 segments=segments,
             )
         ],
-        inputs=lw.Input(link="disc", start=0, stop=360, step=1),
+        inputs=lw.Input(link="disc", from_=0, to=360, step=1),
     )  # fmt: skip
     found = [cam.sweep(step=step).value("time_ratio(s)") for step in (1, 5, 10, 20)]
     # 4-5-6-7 leaves a rest with the fourth power of the angle

@@ -47,7 +47,7 @@ def test_it_is_0_where_both_arms_lie_in_one_line() -> None:
     parallel = lw.linkage(
         points={"O2": (0, 0), "A": (0, 30), "B": (100, 30), "O4": (100, 0)},
         links={"ground": ["O2", "O4"], "r2": ["O2", "A"], "r3": ["A", "B"], "r4": ["O4", "B"]},
-        inputs=lw.Input(link="r2", start=90, stop=0, step=-10),
+        inputs=lw.Input(link="r2", from_=90, to=0, step=-10),
     )
     motion = parallel.sweep()
     np.testing.assert_allclose(motion["B.transmission"], motion["r2"], atol=1e-9)

@@ -228,8 +228,8 @@ class Mechanism:
     def sweep(
         self,
         *,
-        start: Number | None = None,
-        stop: Number | None = None,
+        from_: Number | None = None,
+        to: Number | None = None,
         step: Number | None = None,
         configuration: str | None = None,
         through: bool = False,
@@ -248,7 +248,7 @@ class Mechanism:
 
         Parameters
         ----------
-        start, stop, step : number, optional
+        from_, to, step : number, optional
             Replace the range of the only input, in file units.
         configuration : str, optional
             Start from the configuration of this name at the input value of the guess, or on this
@@ -279,14 +279,14 @@ class Mechanism:
         Examples
         --------
         >>> import linkwork as lw
-        >>> motion = lw.example("four-bar").sweep(start=0, stop=360, step=90)
+        >>> motion = lw.example("four-bar").sweep(from_=0, to=360, step=90)
         >>> motion["rocker"].round(2)
         array([ 62.72,  80.26, 121.19, 123.86,  62.72])
         """
         model = self.model
         # another range keeps the start position, which is on the branch of the guess
-        if not (start is None and stop is None and step is None):
-            model = motion.model_of(self.description.with_range(start, stop, step))
+        if not (from_ is None and to is None and step is None):
+            model = motion.model_of(self.description.with_range(from_, to, step))
             model = model.from_start_of(self.model)
         if configuration is not None:
             model = wings.use("circuits.configuration_list").start_in_configuration(
@@ -630,7 +630,7 @@ class Mechanism:
         Parameters
         ----------
         **fields
-            Fields of :class:`linkwork.Input`: ``link="rocker"``, ``start=0``, …
+            Fields of :class:`linkwork.Input`: ``link="rocker"``, ``from_=0``, …
 
         Examples
         --------

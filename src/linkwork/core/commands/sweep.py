@@ -223,8 +223,8 @@ def sweep_command(
     columns, numbers = _split_names(mechanism, names)
     with progress("sweeping") as tell:
         motion = mechanism.sweep(
-            start=start,
-            stop=stop,
+            from_=start,
+            to=stop,
             step=step,
             configuration=configuration,
             through=through,

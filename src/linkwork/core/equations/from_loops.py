@@ -209,7 +209,7 @@ def _check_ranges(
     for k, which in enumerate(mechanism.inputs):
         if kinds[canonical(which.drives[1])] == "angle" or which.law is not None:
             continue
-        fields = (("from", which.start), ("to", which.stop), ("step", which.step))
+        fields = (("from", which.from_), ("to", which.to), ("step", which.step))
         missing = [field for field, number in fields if number is None]
         if missing and (missing != ["step"] or len(mechanism.rows(which)) > 1):
             problems.add(

@@ -228,7 +228,7 @@ class Question:
 
 Key = tuple[str | int, ...]
 
-_RANGE = ("start", "stop", "step")
+_RANGE = ("from_", "to", "step")
 _MOST_ROWS = 10_000_000
 _LAW_STEPS = 360  # rows of a table over time, unless its step is given
 
@@ -324,7 +324,7 @@ class Description:
         return Numbers(self.dimensions, self.angle)
 
     def with_range(
-        self, start: Number | None = None, stop: Number | None = None, step: Number | None = None
+        self, from_: Number | None = None, to: Number | None = None, step: Number | None = None
     ) -> Self:
         """A copy with another range of the input's table.
 
@@ -342,8 +342,8 @@ class Description:
         old = self.inputs[0]
         changed = replace(
             old,
-            start=old.start if start is None else start,
-            stop=old.stop if stop is None else stop,
+            from_=old.from_ if from_ is None else from_,
+            to=old.to if to is None else to,
             step=old.step if step is None else step,
         )
         return replace(self, inputs=(changed,))
@@ -450,7 +450,7 @@ class Description:
         if problems:
             return
         timed = [which for which in self.inputs if which.law is not None]
-        given = [w for w in timed if (w.start, w.stop, w.step) != (None, None, None)] or timed
+        given = [w for w in timed if (w.from_, w.to, w.step) != (None, None, None)] or timed
         for k, which in enumerate(self.inputs):
             key = self.input_key(k)
             if which.law is None and len(self.rows(which)) > 1:
@@ -509,12 +509,12 @@ def _check_law(description: Description, which: Input, key: Key, problems: Probl
         if which.begin is not None:
             problems.add((*key, "begin"), "is used with segments only: the formula has a value")
         timed = [w for w in description.inputs if w.law is not None]
-        if all(w.stop is None and isinstance(w.law, str) for w in timed):
+        if all(w.to is None and isinstance(w.law, str) for w in timed):
             problems.add((*key, "to"), "is missing: the last time [s], as a formula has no end")
     else:
         for below, message in law_mistakes(which.law or (), numbers):
             problems.add((*key, "law", *below), message)
-    fields = {"from": which.start, "to": which.stop, "step": which.step, "begin": which.begin}
+    fields = {"from": which.from_, "to": which.to, "step": which.step, "begin": which.begin}
     for field, number in fields.items():
         numbers.check_number(problems.add, (*key, field), 0 if number is None else number)
 
@@ -562,7 +562,7 @@ def _reads_as(name: str, folded: str) -> bool:
 
 def _check_rows(description: Description, which: Input, key: Key, problems: Problems) -> None:
     _check_speed(description, which, (*key, "speed"), problems)
-    fields = (("from", which.start), ("to", which.stop), ("step", which.step))
+    fields = (("from", which.from_), ("to", which.to), ("step", which.step))
     amounts = [
         description.numbers.check_number(problems.add, (*key, field), number)
         for field, number in fields

@@ -481,8 +481,8 @@ class Input:
         The driven variable of loop equations.
     relative_to : str, optional
         With ``link``: the link from which the angle is measured; by default ground.
-    start, stop, step : number or formula, optional
-        The input values in file units (``from``, ``to``, ``step`` in a file). An angle without them
+    from_, to, step : number or formula, optional
+        The input values in file units (in a file ``from``, ``to``, ``step``). An angle without them
         makes one turn in steps of one degree. With a law they are times [s].
     speed : str or number, optional
         ``"300 rpm"``, ``"25 rad/s"``, ``"90 deg/s"``, for lengths ``"50 mm/s"``; a number is in
@@ -501,7 +501,7 @@ class Input:
     Examples
     --------
     >>> import linkwork as lw
-    >>> lw.Input(link="crank", start=0, stop=90, step=30, speed="300 rpm").column
+    >>> lw.Input(link="crank", from_=0, to=90, step=30, speed="300 rpm").column
     'crank'
     >>> lw.Input(link="stick", relative_to="boom").column
     'stick-boom'
@@ -513,8 +513,8 @@ class Input:
     cylinder: str | None = None
     variable: str | None = None
     relative_to: str | None = None
-    start: Number | None = None
-    stop: Number | None = None
+    from_: Number | None = None
+    to: Number | None = None
     step: Number | None = None
     speed: Number | None = None
     law: tuple[LawSegment, ...] | str | None = None

@@ -180,8 +180,8 @@ class Friction:
 
 STOP_KEYS = (
     Key("of", Text(), "The quantity that is bounded: a link, a slider, B.x", required=True),
-    Key("from", NumberKey("named"), "Its least value", field="start"),
-    Key("to", NumberKey("named"), "Its greatest value", field="stop"),
+    Key("from", NumberKey("named"), "Its least value", field="from_"),
+    Key("to", NumberKey("named"), "Its greatest value"),
     Key("restitution", NumberKey(), "Speed after a shock over that before; default 0"),
 )
 
@@ -195,21 +195,21 @@ class Stop:
     ----------
     of : str
         The quantity: a link, a slider, ``B.x``.
-    start, stop : number, optional
-        Its bounds in file units (``from``, ``to`` in a file).
+    from_, to : number, optional
+        Its bounds in file units (``from`` and ``to`` in a file).
     restitution : number
         The speed after a shock over that before, from 0 to 1.
 
     Examples
     --------
     >>> import linkwork as lw
-    >>> lw.Stop(of="rocker", stop=130, restitution=0.3).of
+    >>> lw.Stop(of="rocker", to=130, restitution=0.3).of
     'rocker'
     """
 
     of: str
-    start: Number | None = None
-    stop: Number | None = None
+    from_: Number | None = None
+    to: Number | None = None
     restitution: Number = 0
 
     def __post_init__(self) -> None:
@@ -222,11 +222,11 @@ class Stop:
 
     def mistakes(self, numbers: Numbers) -> Iterator[tuple[str, str]]:
         """Keys with what is wrong."""
-        if self.start is None and self.stop is None:
+        if self.from_ is None and self.to is None:
             yield "from", "is missing: a stop needs from, to, or both"
             return
         amounts = {}
-        for key, number in (("from", self.start), ("to", self.stop)):
+        for key, number in (("from", self.from_), ("to", self.to)):
             if number is not None:
                 try:
                     amounts[key] = numbers(number)

@@ -127,7 +127,7 @@ class Motion:
     Examples
     --------
     >>> import linkwork as lw
-    >>> motion = lw.example("four-bar").sweep(start=0, stop=90, step=30)
+    >>> motion = lw.example("four-bar").sweep(from_=0, to=90, step=30)
     >>> motion["rocker"].round(3)
     array([62.72 , 55.268, 64.943, 80.257])
     >>> motion["rocker.velocity"].round(3)
@@ -286,7 +286,7 @@ class Motion:
         Examples
         --------
         >>> import linkwork as lw
-        >>> motion = lw.example("four-bar").sweep(start=0, stop=90, step=30)
+        >>> motion = lw.example("four-bar").sweep(from_=0, to=90, step=30)
         >>> motion.series("B.x").first.round(3)  # mm/rad
         array([ 47.402,  -8.004, -33.145, -42.497])
         """
@@ -370,7 +370,7 @@ class Motion:
         Examples
         --------
         >>> import linkwork as lw
-        >>> lw.example("four-bar").sweep(start=0, stop=90, step=30).table("rocker", "B.x")
+        >>> lw.example("four-bar").sweep(from_=0, to=90, step=30).table("rocker", "B.x")
         <Table of 4 rows over crank, 4 columns: crank [deg], rocker [deg], B.x [mm], status>
         """
         return table_of(self, *names)
@@ -515,7 +515,7 @@ class Motion:
         Examples
         --------
         >>> import linkwork as lw
-        >>> lw.example("four-bar").sweep(start=0, stop=60, step=60).trace("B").round(1)
+        >>> lw.example("four-bar").sweep(from_=0, to=60, step=60).trace("B").round(1)
         array([136.7+71.1j, 133.9+72.5j])
         """
         own, rate = Rate.split(point)

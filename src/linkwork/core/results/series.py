@@ -27,7 +27,7 @@ class Series:
     Examples
     --------
     >>> import linkwork as lw
-    >>> motion = lw.example("four-bar").sweep(start=0, stop=90, step=30)
+    >>> motion = lw.example("four-bar").sweep(from_=0, to=90, step=30)
     >>> series = motion.unknowns["rocker"]
     >>> series.quantity.name, series.first.round(3)
     ('rocker', array([-0.667,  0.122,  0.457,  0.539]))

@@ -55,7 +55,7 @@ class Table:
     Examples
     --------
     >>> import linkwork as lw
-    >>> table = lw.example("four-bar").sweep(start=0, stop=90, step=30).table()
+    >>> table = lw.example("four-bar").sweep(from_=0, to=90, step=30).table()
     >>> len(table), table.units["rocker"], round(float(table["rocker"][2]), 3)
     (4, 'deg', 64.943)
     """

@@ -27,8 +27,8 @@ from linkwork.core.textfile.keys import EQUATIONS, FORMAT, LINKAGE, LOOPS, Form,
 from linkwork.core.textfile.structure import Structure
 from linkwork.core.textfile.toml_text import Lines, bytes_of, data_of, text_of
 
-#: Keys that are words of Python's ranges there.
-_RENAMED = {"from": "start", "to": "stop"}
+#: Keys that are words of Python.
+_RENAMED = {"from": "from_"}
 
 #: Tables that only mechanisms have.
 _DESCRIBED = ("points", "links", "loops", "equations")

@@ -172,7 +172,7 @@ def _inputs(description: Description) -> _Tables:
 
 
 def _input(which: Input) -> dict[str, Any]:
-    renamed = {"start": "from", "stop": "to"}
+    renamed = {"from_": "from"}
     return {renamed.get(key, key): entry for key, entry in _given(which).items()}
 
 

@@ -137,6 +137,6 @@ def bounds_of(named: Model) -> list[Bound]:
             restitution=numbers(stop.restitution),
         )
         for k, stop in enumerate(description.stops)
-        for field, value, side in (("from", stop.start, 1.0), ("to", stop.stop, -1.0))
+        for field, value, side in (("from", stop.from_, 1.0), ("to", stop.to, -1.0))
         if value is not None
     ]

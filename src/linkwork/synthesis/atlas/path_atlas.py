@@ -335,10 +335,8 @@ def placed_on_curve(near: Nearest, curve: ComplexArray, name: str) -> tuple[Link
     value, sense = design.numbers, -1.0 if mirrored else 1.0
     (drive,) = design.inputs
     begin = design.angle.from_radians(float(np.angle(factor)))
-    start, stop, step = (float(value(x or 0.0)) for x in (drive.start, drive.stop, drive.step))
-    crank = replace(
-        drive, start=begin + sense * start, stop=begin + sense * stop, step=sense * step
-    )
+    start, stop, step = (float(value(x or 0.0)) for x in (drive.from_, drive.to, drive.step))
+    crank = replace(drive, from_=begin + sense * start, to=begin + sense * stop, step=sense * step)
     placed = replace(
         design,
         name=name,

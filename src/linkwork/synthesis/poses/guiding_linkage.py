@@ -290,7 +290,7 @@ def _input(design: Design, angle: AngleUnit) -> Input:
     if not design.drive.turns:
         step = span / _STEPS
         slider = "slide_a" if design.drive is Drive.SLIDER_A else _GUIDE
-        return Input(slider=slider, start=design.start, stop=design.stop, step=step)
+        return Input(slider=slider, from_=design.start, to=design.stop, step=step)
     start, stop = angle.from_radians(design.start), angle.from_radians(design.stop)
     count = max(1, math.ceil(abs(span) / _STEP - _SAME_TURN))
     if math.isclose(abs(span), FULL_TURN, rel_tol=_SAME_TURN):
@@ -301,4 +301,4 @@ def _input(design: Design, angle: AngleUnit) -> Input:
         driven = "block"
     elif not design.kind.has_crank:
         driven = "block_a"
-    return Input(link=driven, start=start, stop=stop, step=(stop - start) / count)
+    return Input(link=driven, from_=start, to=stop, step=(stop - start) / count)

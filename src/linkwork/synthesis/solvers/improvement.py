@@ -157,14 +157,14 @@ def _driven(description: Description, task: Task) -> Description:
         message = "has no effect on a mechanism that is driven by a law of time: leave it out"
     if message:
         task.refuse([(("wanted", "input"), message)])
-    begin = 0.0 if driven.start is None else description.numbers(driven.start)
+    begin = 0.0 if driven.from_ is None else description.numbers(driven.from_)
     start, stop = wanted.range or (begin, begin + turn)
     usual = turn / _ROWS if is_angle else abs(stop - start) / _PARTS
     step = abs(description.numbers(driven.step)) if driven.step is not None else usual
     count = max(1, math.ceil(abs(stop - start) / step * (1.0 - EQUAL_ROWS)))
     if len(description.inputs) > 1:  # as many rows as the other inputs have
         count = max(1, len(model.rows) - 1)
-    ranged = replace(driven, start=start, stop=stop, step=(stop - start) / count)
+    ranged = replace(driven, from_=start, to=stop, step=(stop - start) / count)
     return replace(description, inputs=(ranged, *description.inputs[1:]))
 
 

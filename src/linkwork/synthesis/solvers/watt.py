@@ -255,7 +255,7 @@ def watt_linkage(group: WattGroup, k: int, wishes: Wishes, name: str) -> Linkage
         points={point: (place.real, place.imag) for point, place in points.items()},
         links=_LINKS,
         lengths={f"{p} {q}": abs(points[q] - points[p]) for p, q in _BARS},
-        inputs=(Input(link="crank", start=start, stop=stop, step=(stop - start) / count),),
+        inputs=(Input(link="crank", from_=start, to=stop, step=(stop - start) / count),),
         outputs={ERROR: formula} if formula else {},
     )
 

@@ -303,8 +303,8 @@ def _in_units_of(linkage: Linkage, task: Task) -> Linkage:
     inputs = tuple(
         replace(
             drive,
-            start=share * value(drive.start or 0.0),
-            stop=share * value(drive.stop or 0.0),
+            from_=share * value(drive.from_ or 0.0),
+            to=share * value(drive.to or 0.0),
             step=share * value(drive.step or 0.0),
         )
         for drive in linkage.inputs

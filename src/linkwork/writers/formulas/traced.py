@@ -521,8 +521,8 @@ def _without_tables(description: Description) -> Description:
     inputs = tuple(
         replace(
             which,
-            start=plain(which.start),
-            stop=plain(which.stop),
+            from_=plain(which.from_),
+            to=plain(which.to),
             step=plain(which.step),
             speed=None,
         )

@@ -451,7 +451,7 @@ class Rack(ToothedPart):
     >>> import linkwork as lw
     >>> lw.Rack(name="mesh", pinion="pinion", center="G", slider="s", radius=20).slider
     's'
-    >>> motion = lw.example("rack-and-pinion").sweep(start=90, stop=180, step=90)
+    >>> motion = lw.example("rack-and-pinion").sweep(from_=90, to=180, step=90)
     >>> turn = motion["pinion"][0] - motion["pinion"][1]
     >>> stroke = motion["s"][0] - motion["s"][1]
     >>> round(float(abs(stroke / turn)) * 180 / 3.141592653589793, 6)
