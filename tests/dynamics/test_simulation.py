@@ -389,7 +389,7 @@ def test_short_bounces_do_not_go_through_a_stop(of: str, restitution: float) -> 
     places: dict[str, Any] = {"a": float, "A.x": np.cos, "A.y": np.sin}
     for start in (0.65, 0.7, 0.9, 1.25):
         value = float(places[of](start - 0.1))
-        side = "stop" if of == "A.x" else "start"
+        side = "to" if of == "A.x" else "from_"
         stop = lw.Stop(of=of, restitution=restitution, **{side: value})
         push = lw.Load(link="a", torque=-1)
         motion = _lever(np.exp(1j * start), stops=[stop], loads=[push]).simulate(until=5, step=1)
@@ -397,10 +397,10 @@ def test_short_bounces_do_not_go_through_a_stop(of: str, restitution: float) -> 
         assert motion["a"][-1] == pytest.approx(start - 0.1, abs=1e-9)  # it comes to rest
 
 
-@pytest.mark.parametrize("side", ["start", "stop"])
+@pytest.mark.parametrize("side", ["from_", "to"])
 @pytest.mark.parametrize("start", [0.3, 1.1])
 def test_a_motion_may_begin_at_a_stop(start: float, side: str) -> None:
-    into = -1 if side == "start" else 1
+    into = -1 if side == "from_" else 1
     stop = lw.Stop(of="a", restitution=1, **{side: start})
     lever = _lever(np.exp(1j * start), stops=[stop])
     bounced = lever.simulate(until=1, step=0.5, start_speed=into)
@@ -473,7 +473,7 @@ def test_switches_half_a_turn_from_the_start_are_met(torque: str, works: list[fl
     assert motion["crank.velocity"][at] == pytest.approx(speeds, rel=1e-9)
 
 
-@pytest.mark.parametrize(("speed", "key"), [("2 rad/s", "start"), ("-2 rad/s", "stop")])
+@pytest.mark.parametrize(("speed", "key"), [("2 rad/s", "from_"), ("-2 rad/s", "to")])
 def test_a_crank_that_leaves_its_stop_comes_back_to_it(speed: str, key: str) -> None:
     """The stop is where the curve of positions begins and ends."""
     bar = lw.linkage(
@@ -487,12 +487,12 @@ def test_a_crank_that_leaves_its_stop_comes_back_to_it(speed: str, key: str) -> 
             "coupler": lw.Mass(mass=2, shape="rod"),
             "rocker": lw.Mass(mass=3, shape="rod"),
         },
-        gravity=lw.Gravity(angle=-90 if key == "start" else 90),
+        gravity=lw.Gravity(angle=-90 if key == "from_" else 90),
         stops=[lw.Stop(of="crank", **{key: 0})],
         inputs=lw.Input(link="crank"),
     )  # fmt: skip
     motion = bar.simulate(until=1.5, start_speed=speed)
-    inside = motion["crank"] if key == "start" else -motion["crank"]
+    inside = motion["crank"] if key == "from_" else -motion["crank"]
     assert inside.min() > -1e-9
     assert inside.max() > 10.0
     assert "stop of crank" in motion.limit

@@ -14,6 +14,6 @@ def coarse(mechanism: Any, steps: int) -> Any:
     inputs = []
     for which in mechanism.description.inputs:
         number = mechanism.description.numbers
-        first, last = number(which.start or 0), number(360 if which.stop is None else which.stop)
+        first, last = number(which.from_ or 0), number(360 if which.to is None else which.to)
         inputs.append(lw.Input(**{**vars(which), "step": (last - first) / steps or 1}))
     return mechanism.changed(inputs=inputs)

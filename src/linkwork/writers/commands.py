@@ -151,7 +151,7 @@ def plot_command(
 def _circuits(mechanism: Mechanism, kind: str, options: dict[str, Any]) -> Circuits:
     """Find the circuits; reject options of a sweep, which have no effect on whole circuits."""
     options["change_points"] = options["change_points"] != ChangePointPolicy.STOP.value
-    spelled = {"start": "from", "stop": "to"}
+    spelled = {"from_": "from"}
     ignored = [
         f"--{spelled.get(name, name).replace('_', '-')}"
         for name, value in options.items()
@@ -190,8 +190,8 @@ def _circuits(mechanism: Mechanism, kind: str, options: dict[str, Any]) -> Circu
 def program_command(
     file: str,
     output: str,
-    start: Number | None,
-    stop: Number | None,
+    from_: Number | None,
+    to: Number | None,
     step: Number | None,
     configuration: str | None,
     changes: tuple[str, ...],
@@ -214,7 +214,7 @@ def program_command(
     mechanism = read_mechanism(file, changes)
     with progress("sweeping") as tell:
         motion = mechanism.sweep(
-            from_=start, to=stop, step=step, configuration=configuration, progress=tell
+            from_=from_, to=to, step=step, configuration=configuration, progress=tell
         )
     with progress("writing the program"):
         text = code_of(mechanism.model, motion, path)
@@ -337,8 +337,8 @@ def plates_command(
     labels: bool,
     layout: bool,
     bill: str | None,
-    start: Number | None,
-    stop: Number | None,
+    from_: Number | None,
+    to: Number | None,
     step: Number | None,
     configuration: str | None,
     changes: tuple[str, ...],
@@ -366,7 +366,7 @@ def plates_command(
     mechanism = read_mechanism(file, changes)
     with progress("sweeping") as tell:
         motion = mechanism.sweep(
-            from_=start, to=stop, step=step, configuration=configuration, progress=tell
+            from_=from_, to=to, step=step, configuration=configuration, progress=tell
         )
     with progress("choosing layers") as tell:
         stack = stack_of(mechanism.model, motion, options, tell)

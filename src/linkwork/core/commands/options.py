@@ -124,9 +124,9 @@ def columns_option(about: str) -> Decorator:
 def range_options(command: Callable[..., Any]) -> Callable[..., Any]:
     """``--from``, ``--to`` and ``--step`` of a sweep."""
     command = click.option("--step", type=NUMBER, help="Step between input values.")(command)
-    command = click.option("--to", "stop", type=NUMBER, help="Last input value.")(command)
+    command = click.option("--to", "to", type=NUMBER, help="Last input value.")(command)
     first = "First input value, in the file's unit."
-    return click.option("--from", "start", type=NUMBER, help=first)(command)
+    return click.option("--from", "from_", type=NUMBER, help=first)(command)
 
 
 def input_values(mechanism: Mechanism, asked: tuple[str, ...]) -> dict[str, float] | None:

@@ -182,8 +182,8 @@ def _numbers(motion: Motion, names: Sequence[str]) -> Iterator[tuple[str, str]]:
 def sweep_command(
     context: click.Context,
     file: str,
-    start: Number | None,
-    stop: Number | None,
+    from_: Number | None,
+    to: Number | None,
     step: Number | None,
     configuration: str | None,
     through: bool,
@@ -223,8 +223,8 @@ def sweep_command(
     columns, numbers = _split_names(mechanism, names)
     with progress("sweeping") as tell:
         motion = mechanism.sweep(
-            from_=start,
-            to=stop,
+            from_=from_,
+            to=to,
             step=step,
             configuration=configuration,
             through=through,

@@ -205,7 +205,7 @@ class _Reader:
     def _with_range(self, description: Description) -> Description | None:
         if "input" not in self.content:
             return description
-        names = {"from": "start", "to": "stop", "step": "step"}
+        names = {"from": "from_", "to": "to", "step": "step"}
         changes = {names[key]: entry for key, entry in self.content["input"].items()}
         try:
             return description.with_range(**changes)
