@@ -52,8 +52,9 @@ def test_four_bars_in_a_row_pass_the_flat_position_twice_a_turn(count: int) -> N
     )
     assert motion.found.all()
     for t, (x, y) in WINDOW_PLACES[count].items():
-        assert motion["B0.x"][t] == pytest.approx(x, abs=1e-10)
-        assert motion["B0.y"][t] == pytest.approx(y, abs=1e-10)
+        # rates that differ in their last bit move forty flat loops by 8e-10
+        assert motion["B0.x"][t] == pytest.approx(x, abs=1e-10 if count < 40 else 2e-9)
+        assert motion["B0.y"][t] == pytest.approx(y, abs=1e-10 if count < 40 else 2e-9)
 
 
 def test_the_squeezer_is_that_of_the_test_set() -> None:

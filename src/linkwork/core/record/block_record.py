@@ -245,17 +245,20 @@ class ShapeWriter:
             return rec.total([rec.multiply(a, b) for a, b in zip(row, column, strict=True)])
 
         side = [product(row, [first[k] for k in known]) for row in drives]
-        first |= {k: -product(inverse[k], side) for k in unknowns}  # eq. (11)
+        # solved, not multiplied by the inverse: a rate that is exactly 0 or 1 comes out so
+        (rates,) = solve_linear(rec, matrix, [side]).columns
+        first |= {k: -x for k, x in enumerate(rates)}  # eq. (11)
         driven = [product(row, [second[k] for k in known]) for row in drives]
         bends = [rec.add(a, b) for a, b in zip(closure.bending(first, first), driven, strict=True)]
-        second |= {k: -product(inverse[k], bends) for k in unknowns}  # eq. (12)
+        (bent,) = solve_linear(rec, matrix, [bends]).columns
+        second |= {k: -x for k, x in enumerate(bent)}  # eq. (12)
         weights = [closure.scale(k) for k in unknowns]
         condition = rec.multiply(  # eq. (14)
             _norm(rec, matrix, weights, closure.equation_scales),
             _norm(rec, inverse, closure.equation_scales, weights),
         )
-        rates = [rec.add(which[k], 0.0) for which in (first, second) for k in unknowns]
-        return [x.number for x in (*rates, condition, determinant)]
+        both = [rec.add(which[k], 0.0) for which in (first, second) for k in unknowns]
+        return [x.number for x in (*both, condition, determinant)]
 
     def balanced(self) -> str:
         """The condition with all columns of J equally long."""
