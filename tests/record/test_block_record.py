@@ -2,7 +2,11 @@
 
 from __future__ import annotations
 
+import os
+import subprocess
+import sys
 from dataclasses import replace
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -142,3 +146,17 @@ def test_blocks_that_know_no_variable_are_solved_as_by_the_array_form() -> None:
         own, other = led.solver.rates(here, rate), plain(led.solver).rates(here, rate)
         np.testing.assert_array_equal(own.orientation, other.orientation)
         np.testing.assert_allclose(own.condition, other.condition, rtol=1e-9)
+
+
+def test_code_is_kept_for_other_processes(tmp_path: Path) -> None:
+    """Sets are printed in another order in each process."""
+    code = "import linkwork as lw; print(lw.example('jansen-leg').sweep().certified.all())"
+    kept = []
+    for seed in ("1", "2"):
+        environment = {**os.environ, "LINKWORK_CACHE": str(tmp_path), "PYTHONHASHSEED": seed}
+        command = [sys.executable, "-c", code]
+        done = subprocess.run(command, env=environment, capture_output=True, text=True, check=True)
+        assert done.stdout.strip() == "True"
+        kept.append({path.name: path.stat().st_mtime_ns for path in tmp_path.rglob("*.bin")})
+    assert kept[0]
+    assert kept[1] == kept[0]

@@ -112,6 +112,11 @@ class Shape:
     zeros: frozenset[str]
     ones: frozenset[str]
 
+    @property
+    def key(self) -> str:
+        """The same in every process: sets have no order."""
+        return f"{self.sizes} {self.parts} {sorted(self.zeros)} {sorted(self.ones)}"
+
     @classmethod
     def of(cls, table: LoopTable, numbers: Mapping[str, Any]) -> Shape:
         loops, lines = table.loops, table.linear
@@ -416,7 +421,7 @@ class ShapeFunctions:
 
     def __init__(self, table: LoopTable, shape: Shape, form: Form) -> None:
         self._writer, self._form = ShapeWriter(table, shape, form), form
-        self._code = KeptCode(f"{form.name} {shape}")
+        self._code = KeptCode(f"{form.name} {shape.key}")
         self.names = self._writer.names
 
     def __getattr__(self, name: str) -> Callable[..., Any]:

@@ -234,7 +234,9 @@ _DIGEST = 32  # bytes
 def _version() -> bytes:
     """A digest of all that decides how functions are written: code of another one is not used."""
     digest = hashlib.sha256(importlib.util.MAGIC_NUMBER)
-    for source in sorted(Path(__file__).parent.glob("*.py")):
+    here = Path(__file__).parent
+    constants = (here.parent / "foundation" / name for name in ("rounding.py", "statuses.py"))
+    for source in (*sorted(here.glob("*.py")), *constants):  # numbers are printed, too
         digest.update(source.read_bytes())
     return digest.digest()
 
