@@ -268,17 +268,14 @@ class ShapeWriter:
     def balanced(self) -> str:
         """The condition with all columns of J equally long."""
         closure = self._closure()
-        rec, n, unknowns = closure.rec, self.n, closure.part.unknowns
+        rec, unknowns = closure.rec, closure.part.unknowns
         matrix, scales = closure.jacobian(unknowns), closure.equation_scales
-        units = [[float(i == j) for i in range(n)] for j in range(n)]
-        columns = solve_linear(rec, matrix, units).columns
-        inverse = [[columns[j][i] for j in range(n)] for i in range(n)]
-        longest = [
-            rec.largest(
-                rec.divide(rec.absolute(row[k]), s) for row, s in zip(matrix, scales, strict=True)
-            )
-            for k in range(n)
+        inverse, _ = _inverse(rec, matrix)
+        scaled = [
+            [rec.divide(rec.absolute(x), s) for x in row]
+            for row, s in zip(matrix, scales, strict=True)
         ]
+        longest = [rec.largest(column) for column in zip(*scaled, strict=True)]
         shares = [rec.divide(1.0, x) for x in longest]
         found = rec.multiply(
             _norm(rec, matrix, shares, scales), _norm(rec, inverse, scales, shares)
