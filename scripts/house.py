@@ -18,7 +18,7 @@ from pathlib import Path
 SOURCE = Path(__file__).resolve().parents[1] / "src" / "linkwork"
 #: Each measure with its goal and its ceiling.
 BOUNDS = {
-    "code lines": (84_000, 96_170),
+    "code lines": (84_000, 96_140),
     "code lines of the core": (27_000, 32_100),
     "files": (380, 509),
     "files of the core": (130, 166),

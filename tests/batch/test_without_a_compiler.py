@@ -4,7 +4,9 @@ from __future__ import annotations
 
 import subprocess
 import sys
+from dataclasses import replace
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -56,6 +58,30 @@ def test_rows_are_those_of_compiled_code(
             np.testing.assert_allclose(one, other, atol=1e-9 * scale, err_msg=quantity)
 
 
+@pytest.mark.parametrize(
+    "range_",
+    [
+        {"from_": 360, "to": 0, "step": -5},
+        {"from_": 60, "to": 60, "step": None},  # one row, where the designs start
+        {"from_": 60, "to": 75, "step": 0.5, "begin": 200},
+    ],
+)
+def test_tables_of_any_order(range_: dict[str, Any], monkeypatch: pytest.MonkeyPatch) -> None:
+    drive = lw.example("rapier-drive")
+    (driven,) = drive.description.inputs
+    drive = drive.changed(inputs=(replace(driven, **range_),))
+    family = drive.family(VARIED["rapier-drive"])
+    expected = family.sweep()
+    for module in (design_sweep, values):
+        monkeypatch.setattr(module, "has_compiler", lambda: False)
+    found = family.sweep()
+    assert found.certified.all()
+    assert not found.rows.alone.any()
+    for name in drive.model.equations.links:
+        scale = max(1.0, float(np.nanmax(np.abs(expected[name]))))
+        np.testing.assert_allclose(found[name], expected[name], atol=1e-9 * scale, err_msg=name)
+
+
 def test_designs_that_lock_are_swept_alone(monkeypatch: pytest.MonkeyPatch) -> None:
     def rocker() -> FamilyMotion:
         bar = lw.example("four-bar").driven_by(link="rocker", relative_to="ground")
@@ -101,9 +127,10 @@ def test_a_compiler_is_offered_once_where_it_pays(
 ) -> None:
     monkeypatch.setattr(design_sweep, "has_compiler", lambda: False)
     monkeypatch.setattr(design_sweep, "_OFFERED", [])
+    monkeypatch.setattr(design_sweep, "_LONG", float("inf"))
     swept("four-bar")
     assert not caplog.records
-    monkeypatch.setattr(design_sweep, "_MANY", 1000)
+    monkeypatch.setattr(design_sweep, "_LONG", 0.0)
     for _ in range(2):
         swept("four-bar")
     (offer,) = caplog.records

@@ -12,8 +12,11 @@ from typing import Any
 import numpy as np
 
 from linkwork.core.foundation.arrays import Array, BoolArray
+from linkwork.core.foundation.rounding import UNIT_ROUNDOFF
 from linkwork.core.foundation.statuses import Certification, Status
+from linkwork.core.numerics.branch_tracking import quintic
 from linkwork.core.numerics.proved_rows import Part, Points, parts_of, solve_points
+from linkwork.core.numerics.system import SolvedRows
 from linkwork.core.record.block_record import functions_of, numbers_of
 from linkwork.core.record.python_text import ARRAYS
 from linkwork.core.table.loop_table import LoopTable
@@ -36,9 +39,7 @@ def fill(path: TablePath, designs: Designs, found: DesignRows, certify: bool) ->
     """
     solver = path.model.compiled.solver
     whole = np.zeros(len(designs), dtype=bool)
-    inputs = designs.start[:, solver.unknowns :]
-    begin = inputs[:, path.lead]
-    on_path = np.all(np.abs(inputs - (path.origin + path.rate * begin[:, None])) <= 1e-12, axis=1)
+    begin, on_path = path.starts_of(designs)
     fine = np.flatnonzero((designs.problem == 0) & on_path & (begin == np.median(begin)))
     if not solver.is_recorded or not len(fine):
         return whole
@@ -110,10 +111,12 @@ class _Part:
     def _solved(self, times: Array, nodes: Array, t: Array, which: Any) -> Points:
         """Some designs at rising values of t, between their nodes."""
         n = self.solver.unknowns
-        weights, left = _hermite(times, t)
+        left = np.searchsorted(times[1:-1], t, side="right")
+        h = (times[left + 1] - times[left])[:, None, None]
+        s = (t - times[left])[:, None, None] / h
         start = np.empty((n + len(self.rates), len(t), len(which)))
-        both = np.concatenate([nodes[left], nodes[left + 1]], axis=1)  # (P, 6, n, d)
-        start[:n] = np.einsum("pk,pknd->npd", weights, both)
+        between = quintic(s, h, _node_rows(nodes[left]), _node_rows(nodes[left + 1]))
+        start[:n] = between.swapaxes(0, 1)
         start[n:] = (self.path.origin + np.outer(t, self.path.rate)).T[:, :, None]
         return solve_points(self._parts(which), start, self._radius(t), self.rates)
 
@@ -139,12 +142,14 @@ class _Part:
         """How far inputs may be from the intended ones, (p, P, 1)."""
         wide = self.path.input_radius(np.array([self.begin]))
         inputs = np.abs(self.path.origin + np.outer(points, self.path.rate))
-        return (4.0 * 2.0**-53 * inputs + wide).T[:, :, None]
+        return (4.0 * UNIT_ROUNDOFF * inputs + wide).T[:, :, None]
 
     def _nodes(self, low: float, high: float) -> tuple[Array, Array, BoolArray]:
         """Times (K,), values and both rates of nodes (K, 3, n, d); which designs reach them all."""
-        low, high = min(low, self.begin), max(high, self.begin)
         stride = _STRIDE * self.path.size
+        low, high = min(low, self.begin), max(high, self.begin)
+        if low == high:  # one row, at the start: a step needs two nodes
+            high += stride
         down = int(np.ceil((self.begin - low) / stride))
         up = int(np.ceil((high - self.begin) / stride))
         times = np.concatenate(
@@ -162,11 +167,12 @@ class _Part:
                 h = times[k] - times[last]
                 if before is None:
                     x, a, b = nodes[last]
-                    guess = x + h * a + (0.5 * h * h) * b
-                else:
-                    own = _basis(times[before], times[last], times[k])
-                    both = np.concatenate([nodes[before], nodes[last]])
-                    guess = np.einsum("k,knd->nd", own, both)
+                    guess = x + h * a + (0.5 * h * h) * b  # eq. (17)
+                else:  # the quintic through the last two nodes, continued
+                    step = times[last] - times[before]
+                    guess = quintic(
+                        1.0 + h / step, step, _node_rows(nodes[before]), _node_rows(nodes[last])
+                    )
                 self._node(parts, times[k], guess, nodes[k], good)
                 before, last = last, k
         return times, nodes, good
@@ -211,21 +217,7 @@ def _between(t: Array, finer: int) -> Array:
     return (t[:-1, None] + np.diff(t)[:, None] * shares).ravel()
 
 
-def _basis(t0: Any, t1: Any, t: Any) -> Array:
-    """Weights at t of value and both derivatives at two nodes, (6,) or (6, P)."""
-    h = t1 - t0
-    z = (t - t0) / h
-    y = 1.0 - z
-    return np.array(
-        [
-            y**3 * (1.0 + 3.0 * z + 6.0 * z * z), h * z * y**3 * (1.0 + 3.0 * z),
-            0.5 * h * h * z * z * y**3, z**3 * (1.0 + 3.0 * y + 6.0 * y * y),
-            -h * y * z**3 * (1.0 + 3.0 * y), 0.5 * h * h * y * y * z**3,
-        ]
-    )  # fmt: skip
-
-
-def _hermite(times: Array, t: Array) -> tuple[Array, Any]:
-    """Weights (P, 6) of the nodes at both sides of each t (P,), and the number of the left one."""
-    left = np.searchsorted(times[1:-1], t, side="right")
-    return _basis(times[left], times[left + 1], t).T, left
+def _node_rows(nodes: Array) -> SolvedRows:
+    """Values and both rates of nodes (..., 3, n, d), (..., n, d) each."""
+    v, first, second = np.moveaxis(nodes, -3, 0)
+    return SolvedRows(v=v, first=first, second=second)

@@ -1,4 +1,4 @@
-"""The coefficients of designs by register of the compiled programs."""
+"""Sweeps of all designs of a family: their rows, the limits of their branches."""
 
 from __future__ import annotations
 
@@ -349,12 +349,15 @@ class TablePath:
 
     def march(self, designs: Designs, certify: bool, threads: int, execution: Execution) -> Any:
         """The march of designs that start on the path or can be moved to it."""
+        march = wings.use("families.family_march").FamilyMarch
+        return march(self, designs, self.starts_of(designs)[1], certify, threads, execution)
+
+    def starts_of(self, designs: Designs) -> tuple[Array, BoolArray]:
+        """Where designs start, values of t (D,), and which of them start on the path (D,)."""
         inputs = designs.start[:, self.model.compiled.solver.unknowns :]
         start = inputs[:, self.lead]
         away = np.abs(inputs - (self.origin + self.rate * start[:, None]))
-        served: BoolArray = np.all(away <= _ON_PATH * np.maximum(1.0, np.abs(inputs)), axis=1)
-        march = wings.use("families.family_march").FamilyMarch
-        return march(self, designs, served, certify, threads, execution)
+        return start, np.all(away <= _ON_PATH * np.maximum(1.0, np.abs(inputs)), axis=1)
 
     def _note(self, found: DesignRows, reached: BoolArray, whole: BoolArray, certify: bool) -> None:
         """Set the status of reached rows, and of the other rows of finished designs."""
@@ -369,8 +372,8 @@ class TablePath:
         np.copyto(found.certification, proof.code, where=reached)
 
 
-_MANY = 100_000  # positions for which compiled code is worth its installation
-_FASTER = 5.0  # times, in one thread
+_LONG = 1.0  # seconds from which on compiled code is worth its installation
+_FASTER = 5.0  # times, in one thread; designs swept alone gain far more
 _OFFERED: list[bool] = []  # once in a process
 
 
@@ -386,16 +389,15 @@ def _fill(
     if has_compiler():
         return path.fill(designs, found, certify, threads, execution)
     found.clear(np.ones(found.status.shape, dtype=bool), certify)
-    begin = perf_counter()
     done: BoolArray = wings.use("families.array_march").fill(path, designs, found, certify)
-    if found.status.size >= _MANY and not _OFFERED:
-        _OFFERED.append(True)
-        _offer_compiler(found.status.size, perf_counter() - begin)
     return done
 
 
 def _offer_compiler(positions: int, seconds: float) -> None:
-    """Say how long compiled code would take."""
+    """Say how long compiled code would take, once."""
+    if seconds < _LONG or _OFFERED or has_compiler():
+        return
+    _OFFERED.append(True)
     logging.getLogger("linkwork").warning(
         "%s positions took %.1f s; with the extra fast they take about %.1f s: "
         'pip install "linkwork[fast]", or ".[fast]" in a clone',
@@ -414,7 +416,7 @@ def design_rows(
     points, change points, no position at the start) and mechanisms with other equations are swept
     one at a time, so every row has the same status as in a single sweep.
     """
-    model = designs.base
+    model, begin = designs.base, perf_counter()
     left = designs.problem == 0
     path = TablePath.of(model)
     found = DesignRows.blank(
@@ -435,4 +437,6 @@ def design_rows(
             left &= ~open_ones
     for k in np.flatnonzero(left):
         sweep_single(designs, int(k), found, certify)
+    if path is not None:
+        _offer_compiler(found.status.size, perf_counter() - begin)
     return found.freeze()

@@ -170,10 +170,8 @@ class Family:
     def _execution(self, specialised: bool | None, device: str) -> Execution:
         positions = len(self) * len(self.designs.base.rows)
         execution = Execution(specialised=specialised, positions=positions, device=device)
-        if execution.device == "gpu":
-            wings.use(
-                "families.gpu.kernel"
-            ).graphics_card()  # raises an error before any computation
+        if execution.device == "gpu":  # an error before any computation
+            wings.use("families.gpu.kernel").graphics_card()
         return execution
 
     def _sweep(self, certify: bool, threads: int, execution: Execution) -> FamilyMotion:

@@ -8,11 +8,7 @@ from functools import lru_cache
 
 import numpy as np
 
-from linkwork.core.foundation.arrays import (
-    Array,
-    BoolArray,
-    IndexArray,
-)
+from linkwork.core.foundation.arrays import Array, BoolArray, IndexArray
 from linkwork.core.foundation.rounding import UNIT_ROUNDOFF
 from linkwork.core.foundation.units import FULL_TURN
 from linkwork.core.motion.following import turns_freely

@@ -6,7 +6,6 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
-from typing import Any
 
 import numpy as np
 
@@ -193,7 +192,7 @@ class BlockSolver:
             own = own if own < math.inf else math.inf
             condition = max(condition, own)
             if own > LARGE:  # balancing the columns costs more than the rates themselves
-                own = _between(own, _balanced(record, here))
+                own = math.sqrt(own) * math.sqrt(min(own, _balanced(record, here)))  # eq. (15)
             nearness = max(nearness, own)
             signs.append((determinant > 0.0) - (determinant < 0.0))
         return condition, nearness, signs
@@ -257,8 +256,7 @@ class BlockSolver:
     ) -> SolvedRows:
         """First and second derivative of all variables, as the inputs move.
 
-        J x' = -F_u u';  J x'' = -D²F[(x', u'), (x', u')]: one inverse of J serves both and the
-        condition number.
+        J x' = -F_u u';  J x'' = -D²F[(x', u'), (x', u')].
 
         Parameters
         ----------
@@ -360,11 +358,7 @@ def _solve_recorded(
     """
     correct, n = record.of_arrays.correct, len(block.unknowns)
     values, count = _columns(start), len(start)
-    iterations, first, contraction = (
-        np.zeros(count, dtype=np.int64),
-        np.zeros(count),
-        np.zeros(count),
-    )
+    iterations, first, contraction = np.zeros(count, np.int64), np.zeros(count), np.zeros(count)
     last: Array | None = None
     with np.errstate(all="ignore"):
         for k in range(options.max_steps + 1):
@@ -416,9 +410,8 @@ def _recorded_rates(
         nearness, risen = condition, np.flatnonzero(condition > LARGE)
         if len(risen):
             (balanced,) = functions.balanced(*(x[risen] for x in here))
-            least = np.where(np.isfinite(balanced), np.minimum(condition[risen], balanced), np.inf)
             nearness = condition.copy()
-            nearness[risen] = _between(condition[risen], least)
+            nearness[risen] = _mean_condition(condition[risen], balanced)
         sign = np.nan_to_num(np.sign(determinant))
     return condition, nearness, np.broadcast_to(sign, count).astype(np.int8)
 
@@ -433,11 +426,10 @@ def _balanced(record: Recorded, v: list[float]) -> float:
     return float(found) if found == found else math.inf
 
 
-def _between(condition: Any, balanced: Any) -> Any:
-    """How near to a singular position, see :func:`_nearness`."""
-    if isinstance(condition, float):
-        return math.sqrt(condition) * math.sqrt(min(condition, balanced))  # eq. (15)
-    return np.sqrt(condition) * np.sqrt(np.minimum(condition, balanced))
+def _mean_condition(condition: Array, balanced: Array) -> Array:
+    """The geometric mean of both conditions, see :func:`_nearness`; the first is the largest."""
+    least = np.where(np.isfinite(balanced), np.minimum(condition, balanced), condition)
+    return np.asarray(np.sqrt(condition) * np.sqrt(least))  # eq. (15)
 
 
 def linearise_block(block: Block, v: Array) -> Linearised:
@@ -477,6 +469,4 @@ def _nearness(condition: Array, s: Array, jacobian: Array, inverse: Array) -> Ar
     with np.errstate(all="ignore"):
         forward = (scaled / longest[:, None, :]).sum(axis=2).max(axis=1, initial=0.0)
         backward = np.abs(inverse * s * longest[:, :, None]).sum(axis=2).max(axis=1, initial=0.0)
-        balanced = forward * backward
-        least = np.where(np.isfinite(balanced), np.minimum(condition, balanced), condition)
-        return np.asarray(np.sqrt(condition) * np.sqrt(least))  # eq. (15)
+        return _mean_condition(condition, forward * backward)

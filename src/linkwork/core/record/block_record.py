@@ -20,7 +20,14 @@ import numpy as np
 from linkwork.core.foundation.rounding import FAR, SMALLEST_RATIO
 from linkwork.core.foundation.statuses import Status
 from linkwork.core.record.block_proof import BlockProof
-from linkwork.core.record.closure import BlockPart, Closure, Row, solve_linear
+from linkwork.core.record.closure import (
+    BlockPart,
+    Closure,
+    Row,
+    inverse_of,
+    solve_linear,
+    weighted_norm,
+)
 from linkwork.core.record.python_text import ARRAYS, FLOATS, Form, KeptCode, Statements, local_name
 from linkwork.core.record.recorder import Op, Recorder, Value
 from linkwork.core.table.loop_table import LoopTable
@@ -244,7 +251,7 @@ class ShapeWriter:
         first: dict[int, Number] = {k: rec.input(f"r{k}") for k in known}
         second: dict[int, Number] = {k: rec.input(f"b{k}") for k in known}
         matrix, drives = closure.jacobian(unknowns), closure.jacobian(known)
-        inverse, determinant = _inverse(rec, matrix)
+        inverse, determinant = inverse_of(rec, matrix)
 
         def product(row: Row, column: Row) -> Value:
             return rec.total([rec.multiply(a, b) for a, b in zip(row, column, strict=True)])
@@ -259,8 +266,8 @@ class ShapeWriter:
         second |= {k: -x for k, x in enumerate(bent)}  # eq. (12)
         weights = [closure.scale(k) for k in unknowns]
         condition = rec.multiply(  # eq. (14)
-            _norm(rec, matrix, weights, closure.equation_scales),
-            _norm(rec, inverse, closure.equation_scales, weights),
+            weighted_norm(rec, matrix, weights, closure.equation_scales),
+            weighted_norm(rec, inverse, closure.equation_scales, weights),
         )
         both = [rec.add(which[k], 0.0) for which in (first, second) for k in unknowns]
         return [x.number for x in (*both, condition, determinant)]
@@ -270,7 +277,7 @@ class ShapeWriter:
         closure = self._closure()
         rec, unknowns = closure.rec, closure.part.unknowns
         matrix, scales = closure.jacobian(unknowns), closure.equation_scales
-        inverse, _ = _inverse(rec, matrix)
+        inverse, _ = inverse_of(rec, matrix)
         scaled = [
             [rec.divide(rec.absolute(x), s) for x in row]
             for row, s in zip(matrix, scales, strict=True)
@@ -278,7 +285,7 @@ class ShapeWriter:
         longest = [rec.largest(column) for column in zip(*scaled, strict=True)]
         shares = [rec.divide(1.0, x) for x in longest]
         found = rec.multiply(
-            _norm(rec, matrix, shares, scales), _norm(rec, inverse, scales, shares)
+            weighted_norm(rec, matrix, shares, scales), weighted_norm(rec, inverse, scales, shares)
         )
         return self._plain("balanced", (rec, [found.number]), self.variables)
 
@@ -369,27 +376,6 @@ def _radii(closure: _Numbers, proof: BlockProof, kind: str) -> list[int]:
 def _listed(names: Iterable[str]) -> str:
     """Names as a tuple."""
     return "".join(f"{name}, " for name in names).removesuffix(" ") or "()"
-
-
-def _inverse(rec: Recorder, matrix: Sequence[Row]) -> tuple[list[list[Value]], Value]:
-    """The inverse of a matrix and its determinant."""
-    n = len(matrix)
-    units = [[float(i == j) for i in range(n)] for j in range(n)]
-    solution = solve_linear(rec, matrix, units)
-    return [list(row) for row in zip(*solution.columns, strict=True)], solution.determinant
-
-
-def _norm(rec: Recorder, matrix: Sequence[Row], columns: Row, rows: Row) -> Value:
-    """The largest sum of moduli of a row, columns multiplied and rows divided by weights."""
-    return rec.largest(
-        rec.divide(
-            rec.total(
-                [rec.multiply(rec.absolute(x), w) for x, w in zip(row, columns, strict=True)]
-            ),
-            scale,
-        )
-        for row, scale in zip(matrix, rows, strict=True)
-    )
 
 
 def _unmoved(rec: Recorder, moving: set[str], values: Sequence[int]) -> list[int]:

@@ -330,6 +330,27 @@ def solve_linear(rec: Recorder, matrix: Sequence[Row], sides: Sequence[Row]) -> 
     return _by_elimination(rec, matrix, sides)
 
 
+def inverse_of(rec: Recorder, matrix: Sequence[Row]) -> tuple[list[list[Value]], Value]:
+    """The inverse of a matrix and its determinant."""
+    n = len(matrix)
+    units = [[float(i == j) for i in range(n)] for j in range(n)]
+    solution = solve_linear(rec, matrix, units)
+    return [list(row) for row in zip(*solution.columns, strict=True)], solution.determinant
+
+
+def weighted_norm(rec: Recorder, matrix: Sequence[Row], columns: Row, rows: Row) -> Value:
+    """The largest sum of moduli of a row, columns multiplied and rows divided by weights."""
+    return rec.largest(
+        rec.divide(
+            rec.total(
+                [rec.multiply(rec.absolute(x), w) for x, w in zip(row, columns, strict=True)]
+            ),
+            scale,
+        )
+        for row, scale in zip(matrix, rows, strict=True)
+    )
+
+
 def _by_cramer(rec: Recorder, m: Sequence[Row], sides: Sequence[Row]) -> Linear:
     (a, b), (c, d) = m
     determinant = rec.subtract(rec.multiply(a, d), rec.multiply(b, c))

@@ -20,7 +20,7 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping, Sequence, Set
 from dataclasses import dataclass
 
-from linkwork.core.record.closure import BlockPart, Closure, solve_linear
+from linkwork.core.record.closure import BlockPart, Closure, inverse_of, solve_linear, weighted_norm
 from linkwork.core.record.recorder import (
     Program,
     Recorder,
@@ -137,29 +137,12 @@ class _RateWriter:
         return self.rec.constant(1.0) if self.table.is_angle[k] else self.rec.input(f"scale{k}")
 
     def _condition(self, closure: Closure, scales: Sequence[Number]) -> Value:
-        rec, n = self.rec, len(scales)
+        rec = self.rec
         weights = [self._weight(k) for k in closure.part.unknowns]
         matrix = closure.jacobian(closure.part.unknowns)
-        units = [[1.0 if i == j else 0.0 for i in range(n)] for j in range(n)]
-        columns = solve_linear(rec, matrix, units).columns
-        forward = self._norm(matrix, weights, scales)
-        inverse = [[columns[j][i] for j in range(n)] for i in range(n)]
-        return rec.multiply(forward, self._norm(inverse, scales, weights))  # eq. (14)
-
-    def _norm(
-        self, matrix: Sequence[Sequence[Number]], columns: Sequence[Number], rows: Sequence[Number]
-    ) -> Value:
-        """The largest sum of moduli of a row, columns multiplied and rows divided by weights."""
-        rec = self.rec
-        return rec.largest(
-            rec.divide(
-                rec.total(
-                    [rec.multiply(rec.absolute(x), w) for x, w in zip(row, columns, strict=True)]
-                ),
-                scale,
-            )
-            for row, scale in zip(matrix, rows, strict=True)
-        )
+        inverse, _ = inverse_of(rec, matrix)
+        forward = weighted_norm(rec, matrix, weights, scales)
+        return rec.multiply(forward, weighted_norm(rec, inverse, scales, weights))  # eq. (14)
 
 
 def rate_program(

@@ -187,10 +187,8 @@ def run_study(
     if workers is not None:
         workers = whole_number("workers", workers, least=1)
     study = plan if isinstance(plan, Study) else read_plan(plan)
-    if study.job.device == "gpu" and scheduler is None:
-        wings.use(
-            "families.gpu.kernel"
-        ).graphics_card()  # raises an error before a store is created
+    if study.job.device == "gpu" and scheduler is None:  # an error before a store is created
+        wings.use("families.gpu.kernel").graphics_card()
     if workers is None:
         workers = 1 if study.job.device == "gpu" else cores()
     with open_store(study, as_path(store), force=force) as target:
