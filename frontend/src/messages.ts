@@ -689,7 +689,7 @@ export interface TaskSolved {
   interrupted: boolean;
   error_unit: string;
   defects: Record<string, number>;
-  costliest: string;
+  most_restrictive: string;
   costs: number;
   advice: string;
   designs: readonly (DesignShown)[];

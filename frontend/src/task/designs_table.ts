@@ -185,7 +185,7 @@ export function verdict(solved: TaskSolved, kind: string): string {
   const none = kind === "improve" ? "No start leads to a design." : "No mechanism of the wanted kinds solves the task.";
   if (!solved.count) return stopped ? "Stopped before a design was found." : `${none} ${solved.advice}`.trim();
   if (solved.sound) return `${stopped}${designs}, ${solved.sound} without defects${solved.delivered < solved.sound ? `; the best ${solved.delivered} are delivered` : ""}.`;
-  const cost = solved.costliest ? `The wish that costs most is ${solved.costliest}: without it ${solved.costs} would be sound. ${solved.advice}` : solved.advice;
+  const cost = solved.most_restrictive ? `The requirement that rejects the most designs is ${solved.most_restrictive}: without it ${solved.costs} more would do. ${solved.advice}` : solved.advice;
   return `${stopped}No design is free of defects (${designs}). ${cost}`.trim();
 }
 

@@ -330,7 +330,7 @@ def test_wishes_are_written_in_one_line_and_removed(tmp_path: Path) -> None:
     found = solved(bench.handle(do.SetTaskEntry(key="wanted.lengths.most", value=5000.0)))
     assert "lengths = { most = 5000" in bench.text
     assert found.sound == 0
-    assert (found.costliest, found.costs) == ("the least transmission angle", 3)
+    assert (found.most_restrictive, found.costs) == ("the least transmission angle", 3)
     assert solved(bench.handle(do.SetTaskEntry(key="wanted.transmission.least"))).sound > 0
 
 

@@ -121,7 +121,8 @@ def test_a_half_drawn_task_an_unsound_one_and_a_lost_server_say_so(
     page.get_by_label("Transmission angle at least").fill("89")
     page.keyboard.press("Enter")
     page.get_by_role("tab", name="Designs").click()
-    page.get_by_text("The wish that costs most is the least transmission angle").wait_for()
+    requirement = "The requirement that rejects the most designs is the least transmission angle"
+    page.get_by_text(requirement).wait_for()
     assert page.locator(".lw-t-designs tbody tr:not(.lw-t-refused)").count() == 0
     assert_accessible(page)  # a refused design is chosen
     page.get_by_role("tab", name="Task").click()

@@ -134,8 +134,9 @@ class TaskSolved:
     """The designs for the task, sound ones first.
 
     ``live``: during a drag, with the chosen design only. ``defects``: numbers of designs by defect.
-    ``costliest``: the wish that costs most, and how many designs it costs. ``advice``: what to
-    change where no wish is to blame. ``left_out``: designs that are not in the list.
+    ``most_restrictive``: the requirement that rejects the most designs; ``costs``: their number.
+    ``advice``: what to change where no requirement is to blame. ``left_out``: designs that are not
+    in the list.
     ``centre_curve``: polylines x, y, x, y, … of possible fixed pivots.
     """
 
@@ -150,7 +151,7 @@ class TaskSolved:
     interrupted: bool
     error_unit: str
     defects: dict[str, float]
-    costliest: str  # noqa: V107  # read by the page
+    most_restrictive: str  # noqa: V107  # read by the page
     costs: int
     advice: str
     designs: tuple[DesignShown, ...]

@@ -159,7 +159,8 @@ def task_solved(synthesis: Synthesis, chosen: DesignFound | None, *, live: bool)
     """The counts and the list; ``live``: without the list and the most restrictive requirement."""
     listed = [] if live else _listed(synthesis, chosen)
     # to judge without requirements takes longer than a drag waits
-    wish, costs = (None if live or synthesis.sound else synthesis.most_restrictive) or ("", 0)
+    judged = None if live or synthesis.sound else synthesis.most_restrictive
+    requirement, costs = judged or ("", 0)
     solutions = f"{synthesis.complex} complex, {synthesis.real} real, {synthesis.proved} proved"
     if synthesis.starts:
         solutions = f"{synthesis.real} fits from {synthesis.starts} starts"
@@ -175,7 +176,7 @@ def task_solved(synthesis: Synthesis, chosen: DesignFound | None, *, live: bool)
         interrupted=synthesis.interrupted,
         error_unit=synthesis.error_unit,
         defects={kind.value: count for kind, count in synthesis.defects.items()},
-        costliest=wish,
+        most_restrictive=requirement,
         costs=costs,
         advice="" if live else advice_of(synthesis),
         designs=tuple(design_shown(synthesis.designs[k], k) for k in listed),
