@@ -16,9 +16,9 @@ from linkwork.core.mechanism.description import Description
 from linkwork.core.results.listing.motion_listing import rounded_down
 from linkwork.core.results.quantities.rows import TRANSMISSION_ANGLE
 from linkwork.synthesis.defects.obstacles import meets_obstacle
-from linkwork.synthesis.loops.candidates import Candidates, Drive, LoopKind
-from linkwork.synthesis.loops.driven_loop import NOWHERE, Travel, driven_loops, travel_of
-from linkwork.synthesis.loops.limits import DrivenLoops
+from linkwork.synthesis.loops.candidates import Candidates, Drive, Side
+from linkwork.synthesis.loops.driven_loop import NOWHERE, Travel, travel_of
+from linkwork.synthesis.loops.limits import DrivenLoops, driven_loops
 from linkwork.synthesis.tasks.conditions import Wishes
 from linkwork.synthesis.tasks.task import Task
 
@@ -151,24 +151,22 @@ def judge(group: Candidates, drive: Drive, wishes: Wishes) -> Verdicts:
 
 
 def _lengths(loops: Candidates) -> Array:
-    """The lengths of crank, coupler, and of a four-bar rocker and ground, (D, 2 to 4).
+    """The lengths of crank, rocker, coupler and ground, as far as there are any, (D, 1 to 4).
 
     A coupler that slides in a block is as long as its farthest position needs.
     """
-    if loops.kind is LoopKind.RAPSON:
-        return np.asarray(np.abs(loops.fixed_b[:, None] - loops.moving_a).max(axis=1)[:, None])
-    if not loops.kind.has_crank:
-        rod = np.abs(loops.moving_b[:, 0] - loops.moving_a[:, 0])
-        ground = np.abs(loops.fixed_b - loops.fixed_a)
-        return np.stack([rod, ground] if loops.kind is LoopKind.OLDHAM else [rod], axis=1)
-    if loops.kind is LoopKind.INVERTED:
-        reach = np.abs(loops.fixed_b[:, None] - loops.moving_a).max(axis=1)
-        ground = np.abs(loops.fixed_b - loops.fixed_a)
-        return np.stack([np.abs(loops.moving_a[:, 0] - loops.fixed_a), ground, reach], axis=1)
-    lengths = [loops.moving_a[:, 0] - loops.fixed_a, loops.moving_b[:, 0] - loops.moving_a[:, 0]]
-    if loops.kind is LoopKind.FOUR_BAR:
-        lengths += [loops.moving_b[:, 0] - loops.fixed_b, loops.fixed_b - loops.fixed_a]
-    return np.abs(np.stack(lengths, axis=1))
+    one, other = loops.kind.sides
+    fixed_pins = ((one, loops.moving_a, loops.fixed_a), (other, loops.moving_b, loops.fixed_b))
+    lengths = [
+        np.abs(moving[:, 0] - fixed) for side, moving, fixed in fixed_pins if side is Side.PIN
+    ]
+    if other is Side.BLOCK and one is not Side.BLOCK:
+        lengths.append(np.abs(loops.fixed_b[:, None] - loops.moving_a).max(axis=1))
+    else:
+        lengths.append(np.abs(loops.moving_b[:, 0] - loops.moving_a[:, 0]))
+    if Side.LINE not in (one, other):
+        lengths.append(np.abs(loops.fixed_b - loops.fixed_a))
+    return np.stack(lengths, axis=1)
 
 
 def _pivots_inside(candidates: Candidates, wishes: Wishes) -> BoolArray:

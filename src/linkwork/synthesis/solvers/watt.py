@@ -22,7 +22,8 @@ from linkwork.core.mechanism.linkage import Linkage
 from linkwork.synthesis.defects.verdicts import Defect, DefectKind
 from linkwork.synthesis.improvement.proved_design import proved_design
 from linkwork.synthesis.loops.candidates import Candidates, Drive, LoopKind
-from linkwork.synthesis.loops.driven_loop import NOWHERE, Travel, driven_loops, travel_of
+from linkwork.synthesis.loops.driven_loop import NOWHERE, Travel, travel_of
+from linkwork.synthesis.loops.limits import driven_loops
 from linkwork.synthesis.six_bars.watt import PAIRS, WattSixBars, watt_six_bars
 from linkwork.synthesis.solvers.result import SolvedTask
 from linkwork.synthesis.solvers.swept_design import SweptDesign
