@@ -365,6 +365,12 @@ class JudgedDesign(ABC):
     Parameters
     ----------
     task : Task
+    mechanism : str
+        The kind of mechanism, or the mechanism that was improved as the task names it.
+    driven : str
+        The driven link in words, or the leading input.
+    error_unit : str
+        The unit of the error; "" of weighted misses.
     number : int
         Its rank among the sound designs from 1, or its place among the refused ones.
     delivered : bool
@@ -382,6 +388,9 @@ class JudgedDesign(ABC):
     """
 
     task: Task
+    mechanism: str
+    driven: str
+    error_unit: str
     number: int = 0
     delivered: bool = False
     score: float = np.nan
@@ -390,16 +399,6 @@ class JudgedDesign(ABC):
         defects = ", ".join(kind.value for kind in self.kinds) or "sound"
         kind, number = type(self).__name__, self.number
         return f"<{kind} {number}: {self.mechanism} driven at {self.driven}, {defects}>"
-
-    @property
-    @abstractmethod
-    def mechanism(self) -> str:
-        """The kind of mechanism, or the mechanism that was improved as the task names it."""
-
-    @property
-    @abstractmethod
-    def driven(self) -> str:
-        """The driven link in words, or the leading input."""
 
     @property
     def numbers(self) -> dict[str, float]:
@@ -452,11 +451,6 @@ class JudgedDesign(ABC):
     @abstractmethod
     def error(self) -> float:
         """How far positions are missed, the largest distance; or the structural error."""
-
-    @property
-    @abstractmethod
-    def error_unit(self) -> str:
-        """The unit of the error."""
 
     @property
     def kinds(self) -> tuple[DefectKind, ...]:

@@ -22,7 +22,7 @@ from linkwork.synthesis.improvement.settings import MotionBounds, nearly_dead
 from linkwork.synthesis.improvement.whole_motion import WholeMotion
 
 
-@internal("description", "motion", "whole_motion")
+@internal("description", "motion", "whole_motion", "unproved")
 @dataclass(frozen=True, kw_only=True, eq=False)
 class ImprovedDesign:
     """A mechanism with improved numbers.
@@ -86,6 +86,19 @@ class ImprovedDesign:
     unmoved: str = ""
     motion: Motion | None = None
     whole_motion: MotionBounds | None = None
+
+    @classmethod
+    def unproved(cls, description: Description, message: str) -> ImprovedDesign:
+        """A mechanism as it is, without a sweep."""
+        return cls(
+            description=description,
+            numbers={},
+            total=np.nan,
+            largest=np.nan,
+            rms=0.0,
+            sound=False,
+            message=message,
+        )
 
     def __repr__(self) -> str:
         return f"<ImprovedDesign: total {self.total:.4g}, {self.message}>"
@@ -168,14 +181,10 @@ def proved_design(
         text += f"; {near_dead}" if near_dead else ""
     except LinkworkError as error:
         sound, text = False, f"{text}{error}"
-    return ImprovedDesign(
-        description=description,
+    return replace(
+        ImprovedDesign.unproved(description, text),
         numbers=numbers,
-        total=np.nan,
-        largest=np.nan,
-        rms=0.0,
         sound=sound,
-        message=text,
         near_dead=near_dead,
         motion=motion,
         whole_motion=whole,

@@ -146,16 +146,6 @@ class SynthesizedDesign(JudgedDesign):
         return self.group.drive
 
     @property
-    def driven(self) -> str:
-        """The driven link in words."""
-        return self.drive.value
-
-    @property
-    def mechanism(self) -> str:
-        """The kind of mechanism."""
-        return self.group.candidates.kind.value
-
-    @property
     def points(self) -> dict[str, complex]:
         """The points at the first position [length]."""
         return self.design.points
@@ -194,17 +184,7 @@ class SynthesizedDesign(JudgedDesign):
     def error(self) -> float:
         """How far positions are missed, the largest distance, or the structural error."""
         miss = float(self.group.candidates.miss[self.index])
-        return self.group.task.angle.from_radians(miss) if self._is_rocker else miss
-
-    @property
-    def _is_rocker(self) -> bool:
-        return self.group.output == "rocker"
-
-    @property
-    def error_unit(self) -> str:
-        """The unit of the error."""
-        task = self.group.task
-        return task.angle.value if self._is_rocker else task.length
+        return self.task.angle.from_radians(miss) if self.group.output == "rocker" else miss
 
     @cached_property
     def design(self) -> Design:

@@ -544,7 +544,14 @@ def _beyond(task: Task) -> float:
 def _ranked_loops(task: Task, judged: list[JudgedDesigns]) -> tuple[SynthesizedDesign, ...]:
     """Designs of loops, which were judged together."""
     designs = [
-        SynthesizedDesign(task=task, group=part, index=k)
+        SynthesizedDesign(
+            task=task,
+            mechanism=part.candidates.kind.value,
+            driven=part.drive.value,
+            error_unit=task.angle.value if part.output == "rocker" else task.length,
+            group=part,
+            index=k,
+        )
         for part in judged
         for k in range(len(part.candidates))
     ]

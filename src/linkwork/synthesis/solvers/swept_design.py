@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace
 from functools import cached_property
 from itertools import combinations, islice
@@ -32,17 +32,21 @@ from linkwork.synthesis.tasks.conditions import (
 from linkwork.synthesis.tasks.task import Task
 
 
-@internal("swept", "description", "improved")
+@internal("improved", "wishes", "place", "changed")
 @dataclass(frozen=True, kw_only=True, eq=False, repr=False)
 class SweptDesign(JudgedDesign):
     """A mechanism of any kind that is judged by a sweep, with its defects.
 
     Parameters
     ----------
-    swept : callable
-        The design with its proof, made at first use.
+    improved : ImprovedDesign
+        The design with its proof.
     wishes : Wishes
         The requirements of the task, in radians.
+    place : Mapping[str, complex], optional
+        The points at the first position; by default in the first row that has one [length].
+    changed : Defect, optional
+        A change of circuit or branch that is known before the sweep, or that this is not decided.
 
     Examples
     --------
@@ -53,32 +57,23 @@ class SweptDesign(JudgedDesign):
     [{'O2 A': 34.46567317588864}]
     """
 
-    swept: Callable[[], ImprovedDesign]
+    improved: ImprovedDesign
     wishes: Wishes
+    place: Mapping[str, complex] | None = None
+    changed: Defect | None = None
 
-    @property
-    def improved(self) -> ImprovedDesign:
-        """The design with its proof."""
-        return self.swept()
-
-    @property
-    def description(self) -> Description:
-        """The mechanism, with the name of the one that was improved."""
-        return self.improved.description
-
-    @property
-    def mechanism(self) -> str:
-        """The mechanism that was improved, as the task names it."""
-        return self.task.mechanisms[0]
-
-    @property
-    def driven(self) -> str:
-        """The leading input."""
-        return self._lead
-
-    @property
-    def _lead(self) -> str:
-        return next(iter(self._motion.inputs)) if self._motion is not None else ""
+    @classmethod
+    def of(cls, task: Task, improved: ImprovedDesign, wishes: Wishes) -> SweptDesign:
+        """A design of a task that improves a mechanism."""
+        motion = improved.motion
+        return cls(
+            task=task,
+            mechanism=task.mechanisms[0],
+            driven="" if motion is None else motion.quantities.names.lead,
+            error_unit=task.length if improved.misses else "",
+            improved=improved,
+            wishes=wishes,
+        )
 
     @property
     def numbers(self) -> dict[str, float]:
@@ -104,7 +99,9 @@ class SweptDesign(JudgedDesign):
 
     @property
     def points(self) -> dict[str, complex]:
-        """The points in the first row that has a position [length]."""
+        """The points at the first position, or in the first row that has one [length]."""
+        if self.place is not None:
+            return dict(self.place)
         return {name: complex(path[0]) for name, path in self._moving_points.items() if len(path)}
 
     @property
@@ -120,12 +117,12 @@ class SweptDesign(JudgedDesign):
         motion = self._motion
         if motion is None or not motion.found.any():
             return float("nan")
-        return float(motion.inputs[self._lead][motion.found][0])
+        return float(motion.inputs[motion.quantities.names.lead][motion.found][0])
 
     @cached_property
     def linkage(self) -> Description:
         """The mechanism, with the name of its design."""
-        return replace(self.description, name=self._name)
+        return replace(self.improved.description, name=self._name)
 
     # Measures
 
@@ -143,7 +140,7 @@ class SweptDesign(JudgedDesign):
     @cached_property
     def _lengths(self) -> Array:
         """The lengths of links, and the distances of fixed pivots [length]."""
-        description, points = self.description, self.points
+        description, points = self.improved.description, self.points
         if not isinstance(description, Draft) or not points:
             return np.zeros(0)
         moving = {p for name, ends in description.links.items() if name != GROUND for p in ends}
@@ -170,16 +167,17 @@ class SweptDesign(JudgedDesign):
             return float(np.nan_to_num(np.max(self.improved.misses), nan=np.inf))
         return self.improved.largest
 
-    @property
-    def error_unit(self) -> str:
-        """The unit of the error; "" of weighted misses."""
-        return self.task.length if self.improved.misses else ""
-
     # Verdict
 
     @cached_property
     def defects(self) -> tuple[Defect, ...]:
-        """Its defects in words; none for a sound design."""
+        """Its defects in words; none for a sound design.
+
+        A sweep without a dead point, each row proved, passes all positions of a six-bar whose loops
+        are on one side at all of them.
+        """
+        if self.changed is not None:
+            return (self.changed,)
         messages = tuple(self._defect_messages())
         if not messages and not self.improved.sound:
             messages = ((DefectKind.NOT_PROVED, self.improved.message),)
@@ -248,7 +246,7 @@ class SweptDesign(JudgedDesign):
 
     def _out_of_range(self, motion: Motion) -> Iterator[tuple[DefectKind, str]]:
         """The first position outside the driven range."""
-        table = np.asarray(motion.inputs[self._lead])[motion.asked]
+        table = np.asarray(motion.inputs[motion.quantities.names.lead])[motion.asked]
         turn = self.task.angle.turn if motion.derivative_unit == "rad" else math.inf
         for k, at, place in islice(outside_range(self.improved.inputs, table, turn), 1):
             yield DefectKind.RANGE, f"position {k + 1} is passed at {at:.6g}, {place}"
@@ -293,7 +291,7 @@ class SweptDesign(JudgedDesign):
     @cached_property
     def _sides(self) -> list[tuple[str, tuple[str, str]]]:
         """The lines between two points of every moving link."""
-        description = self.description
+        description = self.improved.description
         if not isinstance(description, Draft):
             return []
         links = {name: held for name, held in description.links.items() if name != GROUND}
@@ -318,7 +316,7 @@ class SweptDesign(JudgedDesign):
                 yield DefectKind.LENGTHS, message
 
     def _pivots(self) -> dict[str, complex]:
-        description = self.description
+        description = self.improved.description
         if not isinstance(description, Draft):
             return {}
         moving = {p for name, ends in description.links.items() if name != GROUND for p in ends}
@@ -340,22 +338,21 @@ class SweptDesign(JudgedDesign):
         """Wishes that are judged in the whole motion."""
         return () if self.improved.whole_motion is None else wishes_in_motion(self.task)
 
-    @property
-    def tested_in_rows(self) -> tuple[str, ...]:
-        """Wishes that are tested in the rows of the table only."""
-        return () if self.improved.whole_motion is not None else wishes_in_motion(self.task)
-
     def _details(self) -> Mapping[str, Any]:
-        return {
+        improved, proved = self.improved, self.proved_in_motion
+        tested = () if proved or self.changed else wishes_in_motion(self.task)
+        details = {
             "numbers": self.numbers,
             "inputs": list(self.inputs),
-            "proved_in_motion": list(self.proved_in_motion),
-            "tested_in_rows": list(self.tested_in_rows),
+            "proved_in_motion": list(proved),
+            "tested_in_rows": list(tested),
             "goals": self.goals,
-            "misses": list(self.improved.misses),
-            "total": self.improved.total,
-            "message": self.improved.message,
+            "misses": list(improved.misses),
+            "total": improved.total,
+            "message": improved.message,
         }
+        of_all = ("inputs", "proved_in_motion", "tested_in_rows")
+        return details if self.task.kind == "improve" else {key: details[key] for key in of_all}
 
 
 def wishes_in_motion(task: Task) -> tuple[str, ...]:
