@@ -41,7 +41,8 @@ from linkwork.synthesis.improvement.proved_design import (
     fitted_design,
     interrupted_design,
 )
-from linkwork.synthesis.improvement.settings import Aid, Goal, Improvement, Points, least_in_rows
+from linkwork.synthesis.improvement.settings import Aid, Goal, Improvement, Points
+from linkwork.synthesis.improvement.whole_motion import least_in_rows
 from linkwork.synthesis.lane_least_squares import Box
 
 __all__ = [

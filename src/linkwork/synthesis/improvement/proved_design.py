@@ -18,8 +18,7 @@ from linkwork.core.motion.sweeping import sweep
 from linkwork.core.results.motion import Motion, branch_end
 from linkwork.synthesis.improvement.fit_problem import FittedNumbers, path_misses
 from linkwork.synthesis.improvement.goals import PathGoal
-from linkwork.synthesis.improvement.settings import MotionBounds, nearly_dead
-from linkwork.synthesis.improvement.whole_motion import WholeMotion
+from linkwork.synthesis.improvement.whole_motion import WholeMotion, nearly_dead
 
 
 @internal("description", "motion", "whole_motion", "unproved")
@@ -59,7 +58,7 @@ class ImprovedDesign:
         Why it is the mechanism as it was, whose goals are missed; else empty.
     motion : Motion, optional
         Its table with the proofs; ``None`` if it has no position.
-    whole_motion : MotionBounds, optional
+    whole_motion : WholeMotion, optional
         The motion between the rows too; ``None`` if that is not proved.
 
     Examples
@@ -85,7 +84,7 @@ class ImprovedDesign:
     near_dead: str = ""
     unmoved: str = ""
     motion: Motion | None = None
-    whole_motion: MotionBounds | None = None
+    whole_motion: WholeMotion | None = None
 
     @classmethod
     def unproved(cls, description: Description, message: str) -> ImprovedDesign:

@@ -170,6 +170,10 @@ class Drive(Enum):
         return self in (Drive.B0, Drive.SLIDER)
 
 
+def _unknown() -> ComplexArray:
+    return np.zeros(0, dtype=complex)
+
+
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Candidates(Batch):
     """D designs of one kind that hold a body at N positions.
@@ -189,7 +193,7 @@ class Candidates(Batch):
     moving_a, moving_b : (D, N) complex
         The moving pivots at the positions [length].
     guided : (D, N) complex
-        The guided point P at the positions [length].
+        The guided point P at the positions; by default A [length].
     error : (D,)
         A bound of the error of every pivot at every position [length]; infinite where no proof
         holds.
@@ -203,17 +207,24 @@ class Candidates(Batch):
     kind: LoopKind
     fixed_a: ComplexArray
     fixed_b: ComplexArray
-    direction: ComplexArray
     moving_a: ComplexArray
     moving_b: ComplexArray
-    guided: ComplexArray
     error: Array
-    miss: Array
-    direction_a: ComplexArray = field(default_factory=lambda: np.zeros(0, dtype=complex))
+    guided: ComplexArray = field(default_factory=_unknown)
+    direction: ComplexArray = field(default_factory=_unknown)
+    direction_a: ComplexArray = field(default_factory=_unknown)
+    miss: Array = field(default_factory=lambda: _unknown().real)
 
     def __post_init__(self) -> None:
-        if not self.direction_a.size:
-            object.__setattr__(self, "direction_a", np.zeros_like(self.direction))
+        usual = {
+            "guided": self.moving_a,
+            "direction": np.zeros_like(self.fixed_a),
+            "direction_a": np.zeros_like(self.fixed_a),
+            "miss": np.zeros_like(self.error),
+        }
+        for name, array in usual.items():
+            if not getattr(self, name).size:
+                object.__setattr__(self, name, array)
 
     def __len__(self) -> int:
         return len(self.fixed_a)

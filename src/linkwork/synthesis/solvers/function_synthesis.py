@@ -163,9 +163,7 @@ def _loops(
             direction=np.full(len(u), slides, dtype=complex),
             moving_a=moving,
             moving_b=fixed_b[:, None] + output,
-            guided=moving,
             error=error,
-            miss=np.zeros(len(u)),
         )
     ]
 

@@ -219,7 +219,6 @@ def _candidates(points: ComplexArray, solved: Sequence[FourBarPositions]) -> tup
             kind=LoopKind.FOUR_BAR,
             fixed_a=four_bars.fixed_a,
             fixed_b=four_bars.fixed_b,
-            direction=np.zeros(len(four_bars), dtype=complex),
             moving_a=four_bars.moving_a,
             moving_b=four_bars.moving_b,
             guided=four_bars.guided,

@@ -31,28 +31,19 @@ from linkwork.synthesis.tasks.conditions import Wishes
 from linkwork.synthesis.tasks.task import Task
 
 _NONE = Wishes()
-#: Defects that are wishes of the task, not properties of its positions: their words, and the wishes
-#: without them.
-_WISHES: dict[DefectKind, tuple[str, Callable[[Wishes], Wishes]]] = {
-    DefectKind.ORDER: ("the order as given", lambda wishes: replace(wishes, ordered=False)),
-    DefectKind.RANGE: ("the driven range", lambda wishes: replace(wishes, range=None)),
-    DefectKind.TRANSMISSION: (
-        "the least transmission angle",
-        lambda wishes: replace(wishes, transmission=0.0),
-    ),
-    DefectKind.PIVOTS: (
-        "the region of fixed pivots",
-        lambda wishes: replace(wishes, region=_NONE.region),
-    ),
+#: Defects that are wishes of the task, not properties of its positions: their words, and what the
+#: wishes are without them.
+_WISHES: dict[DefectKind, tuple[str, dict[str, Any]]] = {
+    DefectKind.ORDER: ("the order as given", {"ordered": False}),
+    DefectKind.RANGE: ("the driven range", {"range": None}),
+    DefectKind.TRANSMISSION: ("the least transmission angle", {"transmission": 0.0}),
+    DefectKind.PIVOTS: ("the region of fixed pivots", {"region": _NONE.region}),
     DefectKind.LENGTHS: (
         "the bounds of lengths",
-        lambda wishes: replace(wishes, shortest=0.0, longest=np.inf, ratio=np.inf),
+        {"shortest": 0.0, "longest": np.inf, "ratio": np.inf},
     ),
-    DefectKind.TOLERANCE: (
-        "the tolerances",
-        lambda wishes: replace(wishes, points=_NONE.points, reach=_NONE.reach),
-    ),
-    DefectKind.OBSTACLE: ("clear_of", lambda wishes: replace(wishes, obstacles=_NONE.obstacles)),
+    DefectKind.TOLERANCE: ("the tolerances", {"points": _NONE.points, "reach": _NONE.reach}),
+    DefectKind.OBSTACLE: ("clear_of", {"obstacles": _NONE.obstacles}),
 }
 _COUNTS = ("complex", "real", "proved", "triples", "linkages", "starts", "interrupted")
 _MOST_JUDGED = 3  # sets of requirements that are left out to count the designs that they reject
@@ -209,48 +200,58 @@ class SynthesizedDesign(JudgedDesign):
         return linkage_of(self.design, self.task, self._name, self.group.output)
 
 
+@dataclass(frozen=True, kw_only=True, eq=False, repr=False)
+class Solutions:
+    """How many solutions a task has, and whether these are all.
+
+    Parameters
+    ----------
+    complex, real, proved : int
+        Solutions of the equations, those that are real, and those that are proved.
+    triples : int
+        Triples of cognates, for tasks whose solutions are counted so.
+    completeness : Completeness
+        Whether the real solutions are all there are.
+    message : str
+        The same in words of the task.
+    starts : int
+        Starts of a least-squares fit; 0 where equations are solved.
+    interrupted : bool
+        Whether the user stopped it; the designs are the best so far.
+    """
+
+    complex: int
+    real: int
+    proved: int
+    completeness: Completeness
+    message: str
+    triples: int = 0
+    starts: int = 0
+    interrupted: bool = False
+
+
 @internal("helpful_change", "what_helps")
 @dataclass(frozen=True, kw_only=True, eq=False, repr=False)
-class Synthesis:
+class Synthesis(Solutions):
     """All designs for a task, sound ones first.
 
     Parameters
     ----------
     task : Task
-    complex, real, proved : int
-        Solutions of the equations, those that are real, and those that are proved.
-    triples : int
-        Triples of cognates, for tasks whose solutions are counted so.
     linkages : int
         Mechanisms from the real solutions; each may be driven in several ways.
-    completeness : Completeness
-        Whether the real solutions are all there are.
-    message : str
-        The same in words of the task.
     dyads : tuple of Dyad
     designs : tuple of JudgedDesign
         Every mechanism with every driven link, each a SynthesizedDesign: sound ones by score, then
         refused ones. Of ``task = "improve"`` and of six-bars each is a SweptDesign.
-    starts : int
-        Starts of a least-squares fit; 0 where equations are solved.
-    interrupted : bool
-        Whether the user stopped it; the designs are the best so far.
     what_helps : callable
         Tries other tasks and says which of them has sound designs; "" if none has.
     """
 
     task: Task
-    complex: int
-    real: int
-    proved: int
-    triples: int
     linkages: int
-    completeness: Completeness
-    message: str
     dyads: tuple[Dyad, ...]
     designs: tuple[JudgedDesign, ...]
-    starts: int = 0
-    interrupted: bool = False
     what_helps: Callable[[], str] = str
 
     @cached_property
@@ -319,7 +320,7 @@ class Synthesis:
             index = np.array([design.index for design in loops if design.group is group])
             without = group.wishes
             for kind in kinds:
-                without = _WISHES[kind][1](without)
+                without = replace(without, **_WISHES[kind][1])
             count += int(judge(group.candidates.take(index), group.drive, without).sound.sum())
         return count
 
@@ -371,23 +372,15 @@ class Synthesis:
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
-class SolvedTask:
+class SolvedTask(Solutions):
     """The designs that solve a task, before their defects are known.
 
     Parameters
     ----------
     candidates : tuple of Candidates
         Designs, one container for each kind; their positions are those of the task.
-    complex, real, proved : int
-        Solutions of the equations, those that are real, and those that are proved.
-    completeness : Completeness
-        Whether the real solutions are all there are.
-    message : str
-        The same in words of the task.
     dyads : DyadSet, optional
         The real dyads, if the solver combines dyads.
-    triples : int
-        Triples of cognates, for tasks whose solutions are counted so.
     drives : tuple of Drive
         The links that may be driven.
     zeros : tuple of (float, float)
@@ -396,25 +389,13 @@ class SolvedTask:
         measured from its moving pivot.
     output : str
         The name of the output link or slider of a function; "" for other tasks.
-    starts : int
-        Starts of a least-squares fit; 0 where equations are solved.
-    interrupted : bool
-        Whether the user stopped it; the designs are the best so far.
     """
 
-    candidates: tuple[Candidates, ...]
-    complex: int
-    real: int
-    proved: int
-    completeness: Completeness
-    message: str
+    candidates: tuple[Candidates, ...] = ()
     dyads: DyadSet | None = None
-    triples: int = 0
     drives: tuple[Drive, ...] = tuple(Drive)
     zeros: tuple[tuple[float, float], ...] = ()
     output: str = ""
-    starts: int = 0
-    interrupted: bool = False
 
 
 # ----------------------------------------------------------------------

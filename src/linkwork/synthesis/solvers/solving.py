@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Iterator, Sequence
-from dataclasses import replace
+from dataclasses import fields, replace
 from functools import partial
 from itertools import zip_longest
 from typing import NamedTuple, TypeVar
@@ -35,6 +35,7 @@ from linkwork.synthesis.solvers.paths import solve_path
 from linkwork.synthesis.solvers.result import (
     Dyad,
     JudgedDesigns,
+    Solutions,
     SolvedTask,
     Synthesis,
     SynthesizedDesign,
@@ -329,17 +330,10 @@ def _synthesis(
 ) -> Synthesis:
     return Synthesis(
         task=task,
-        complex=solved.complex,
-        real=solved.real,
-        proved=solved.proved,
-        triples=solved.triples,
         linkages=linkages,
-        completeness=solved.completeness,
-        message=solved.message,
         dyads=() if solved.dyads is None else tuple(_dyads(solved)),
         designs=tuple(designs),
-        starts=solved.starts,
-        interrupted=solved.interrupted,
+        **{field.name: getattr(solved, field.name) for field in fields(Solutions)},
     )
 
 
@@ -411,7 +405,6 @@ def _improved(task: Task, progress: Callable[[float], None] | None) -> Synthesis
     message += "" if task.curve is None else task.curve.note
     count = len(designs)
     solved = SolvedTask(
-        candidates=(),
         complex=count,
         real=count,
         proved=sum(design.improved.sound for design in designs),

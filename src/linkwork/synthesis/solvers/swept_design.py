@@ -22,7 +22,7 @@ from linkwork.core.results.motion import Motion, branch_end
 from linkwork.core.results.quantities.rows import TRANSMISSION_ANGLE
 from linkwork.synthesis.defects.verdicts import Defect, DefectKind, JudgedDesign, tolerance_message
 from linkwork.synthesis.improvement.proved_design import ImprovedDesign
-from linkwork.synthesis.improvement.settings import least_in_rows
+from linkwork.synthesis.improvement.whole_motion import least_in_rows
 from linkwork.synthesis.tasks.conditions import (
     EQUAL_LENGTHS,
     Wishes,

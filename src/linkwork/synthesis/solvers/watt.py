@@ -122,21 +122,19 @@ def watt_group(task: Task, bars: WattSixBars, kept: IndexArray, zero: Array | No
     size = np.maximum(np.abs(first), np.abs(second))
     far = np.abs(np.stack([origin, centre, last])).max(axis=0)
     error = bars.error * size + _WATT_GROUP_ROUNDING * (far + size * np.abs(bars.arms).max(axis=1))
-    one = _four_bars(
-        (origin, centre),
-        (
-            placed(origin, first, a[:, None] * crank),
-            placed(centre, first, b[:, None] * turns),
-        ),
-        error,
-    )
-    other = _four_bars(
-        (centre, last),
-        (
-            placed(centre, second, c[:, None] * turns),
-            placed(last, second, e[:, None] * rocker),
-        ),
-        error,
+    one, other = (
+        Candidates(
+            kind=LoopKind.FOUR_BAR,
+            fixed_a=fixed_a,
+            fixed_b=fixed_b,
+            moving_a=placed(fixed_a, ground, arm_a),
+            moving_b=placed(fixed_b, ground, arm_b),
+            error=error,
+        )
+        for fixed_a, fixed_b, ground, arm_a, arm_b in (
+            (origin, centre, first, a[:, None] * crank, b[:, None] * turns),
+            (centre, last, second, c[:, None] * turns, e[:, None] * rocker),
+        )
     )
     return WattGroup(task=task, first=one, second=other, inputs=bars.inputs[kept])
 
@@ -162,25 +160,6 @@ def _grounds(
     return (
         np.exp(1j * zero[0]) * np.abs(a) / a,
         ratio * np.exp(1j * zero[1]) * np.abs(e) / e,
-    )
-
-
-def _four_bars(
-    fixed: tuple[ComplexArray, ComplexArray],
-    moving: tuple[ComplexArray, ComplexArray],
-    error: Array,
-) -> Candidates:
-    count = len(error)
-    return Candidates(
-        kind=LoopKind.FOUR_BAR,
-        fixed_a=fixed[0],
-        fixed_b=fixed[1],
-        direction=np.zeros(count, dtype=complex),
-        moving_a=moving[0],
-        moving_b=moving[1],
-        guided=moving[0],
-        error=error,
-        miss=np.zeros(count),
     )
 
 
@@ -334,7 +313,6 @@ def solved_group(
     zero = np.array([inputs[0], outputs[0]]) if goal.starts_fixed else None
     grade, message = _completeness(six_bars, len(inputs))
     return watt_group(task, six_bars, taken, zero), SolvedTask(
-        candidates=(),
         complex=len(six_bars.roots.x),
         real=len(six_bars),
         proved=int(six_bars.proved.sum()),
