@@ -166,49 +166,6 @@ APPROACH = 4  # parts of the way from the mechanism to a start
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
-class FittedNumbers:
-    """D designs, one for each start that went to the end.
-
-    Parameters
-    ----------
-    x : (D, P)
-        The numbers, file units.
-    t : (D, N)
-        Leading inputs at the points [rad or length].
-    total, largest : (D,)
-        Weighted sums of squares of all misses, and the largest one that is no broken bound.
-    path : (D,)
-        Sums of squares of the distances from the points [length²].
-    names : tuple of str
-        Of the goals that are no bounds.
-    objectives : (D, K)
-        Root mean squares of the misses of each goal that is no bound, without its weight.
-    broken : (D,)
-        The largest weighted residual of a bound.
-    bounds : tuple of Goal
-        Those that a design has to keep.
-    beyond : (D, B, 2)
-        How far it is below and above them.
-    start : (D,)
-        The numbers of their starts.
-    interrupted : bool
-    """
-
-    x: Array
-    t: Array
-    total: Array
-    largest: Array
-    path: Array
-    names: tuple[str, ...]
-    objectives: Array
-    broken: Array
-    bounds: tuple[Goal, ...]
-    beyond: Array
-    start: IndexArray
-    interrupted: bool
-
-
-@dataclass(frozen=True, kw_only=True, eq=False)
 class Fitting:
     """What is fitted.
 
@@ -237,6 +194,52 @@ class Fitting:
     def all_numbers(self, x: Array) -> Array:
         """The numbers (D, P) at the parameters of the fit, (D, G)."""
         return x if self.together is None else self.together.numbers(x)
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class FittedNumbers:
+    """D designs, one for each start that went to the end.
+
+    Parameters
+    ----------
+    fitting : Fitting
+        What was fitted.
+    x : (D, P)
+        The numbers, file units.
+    t : (D, N)
+        Leading inputs at the points [rad or length].
+    total, largest : (D,)
+        Weighted sums of squares of all misses, and the largest one that is no broken bound.
+    path : (D,)
+        Sums of squares of the distances from the points [length²].
+    names : tuple of str
+        Of the goals that are no bounds.
+    objectives : (D, K)
+        Root mean squares of the misses of each goal that is no bound, without its weight.
+    broken : (D,)
+        The largest weighted residual of a bound.
+    bounds : tuple of Goal
+        Those that a design has to keep.
+    beyond : (D, B, 2)
+        How far it is below and above them.
+    start : (D,)
+        The numbers of their starts.
+    interrupted : bool
+    """
+
+    fitting: Fitting
+    x: Array
+    t: Array
+    total: Array
+    largest: Array
+    path: Array
+    names: tuple[str, ...]
+    objectives: Array
+    broken: Array
+    bounds: tuple[Goal, ...]
+    beyond: Array
+    start: IndexArray
+    interrupted: bool
 
 
 class FitProblem(LaneProblem):
@@ -518,6 +521,7 @@ class FitProblem(LaneProblem):
         if timed and self.path is not None:
             t = np.array(np.broadcast_to(self.path.inputs, (len(fit), len(self.path.places))))
         return FittedNumbers(
+            fitting=self.fitting,
             x=self.fitting.all_numbers(fit.x),
             t=t,
             total=np.where(np.isfinite(fit.total), there.total, np.inf),

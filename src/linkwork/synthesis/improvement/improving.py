@@ -28,7 +28,6 @@ from linkwork.synthesis.improvement.fit_problem import (
     misses_before,
 )
 from linkwork.synthesis.improvement.fronts import fit_front, front_designs
-from linkwork.synthesis.improvement.goals import PathGoal
 from linkwork.synthesis.improvement.kept_relations import (
     STARTS,
     Together,
@@ -44,6 +43,7 @@ from linkwork.synthesis.improvement.proved_design import (
 from linkwork.synthesis.improvement.settings import Aid, Goal, Improvement, Points
 from linkwork.synthesis.improvement.whole_motion import least_in_rows
 from linkwork.synthesis.lane_least_squares import Box
+from linkwork.synthesis.lane_problems import part_of
 
 __all__ = [
     "FACTOR",
@@ -64,8 +64,6 @@ _OFF = math.radians(0.25)  # dead points: starts that lead to one are led again,
 # all steps would fail that move it by its effect alone
 _LEAST_EFFECT = 0.3
 _EQUAL_NUMBERS = 1e-6  # relative difference of numbers of equal designs
-
-_Fit = tuple[PathGoal | None, FittedNumbers]
 
 
 def improved_designs(
@@ -107,8 +105,7 @@ def improved_designs(
     except NotElementwise:
         raise InputError(_unfollowed(model, numbers)) from None
     if settings.front:
-        arguments = (model, numbers, box, others, fits, settings.front, is_sound)
-        front = front_designs(*arguments, search.tell_proofs)
+        front = front_designs(fits, settings.front, is_sound, search.tell_proofs)
         return tuple(map(interrupted_design, front)) if search.interrupted else front
     designs = search.proved(fits, range(len(starts)), [])
     locked = [k for k, done in designs if _locks(done)]
@@ -183,19 +180,16 @@ class _Search:
         if self.progress is not None:
             self.progress(self.begin + self.share * fraction)
 
-    def fits(self, goals: Sequence[Goal], starts: Array) -> list[_Fit]:
+    def fits(self, goals: Sequence[Goal], starts: Array) -> list[FittedNumbers]:
         """Fits from starts (D, P), one for each way to time the points."""
         model, settings = self.model, self.settings
         motion = sweep(model, certify=False)
         if not motion.found.any():
             raise InputError(f'"{model.description.name}" has no position: improve one that moves')
         paths = paths_of(model, motion, self.points) if self.points else (None,)
-        fits: list[_Fit] = []
+        fits: list[FittedNumbers] = []
         for part, path in enumerate(paths):
-
-            def told(fraction: float, done: int = part) -> None:
-                self.tell(_SEARCH * (done + fraction) / len(paths))
-
+            told = part_of(self.tell, _SEARCH * part / len(paths), _SEARCH / len(paths))
             fitting = Fitting(
                 model=model,
                 motion=motion,
@@ -211,7 +205,7 @@ class _Search:
                 fit = fit_front(fitting, starts, settings.front, progress=told)
             else:
                 fit = fit_numbers(fitting, starts, minimax=settings.fit == "minimax", progress=told)
-            fits.append((path, fit))
+            fits.append(fit)
             self.begun += len(starts)
             self.lost += len(starts) - int(np.isfinite(fit.total).sum())
             self.interrupted |= fit.interrupted
@@ -248,7 +242,7 @@ class _Search:
 
     def proved(
         self,
-        fits: Sequence[_Fit],
+        fits: Sequence[FittedNumbers],
         starts: Sequence[int],
         known: Sequence[tuple[int, ImprovedDesign]],
     ) -> list[tuple[int, ImprovedDesign]]:
@@ -259,7 +253,7 @@ class _Search:
         minimax = self.settings.fit == "minimax"
         best = sorted(
             (float((fit.largest if minimax else fit.total)[k]), part, int(k))
-            for part, (_, fit) in enumerate(fits)
+            for part, fit in enumerate(fits)
             for k in np.flatnonzero(np.isfinite(fit.total))
         )
         try:
@@ -267,9 +261,9 @@ class _Search:
                 self.tell_proofs(done / len(best))
                 if self.interrupted and self.enough is not None and sound >= self.enough:
                     break
-                path, fit = fits[part]
+                fit = fits[part]
                 if not _is_known(fit.x[k], [design_known for _, design_known in designs]):
-                    design = fitted_design(self.model, self.numbers, path, fit, k)
+                    design = fitted_design(fit, k)
                     designs.append((starts[int(fit.start[k])], design))
                     sound += self.is_sound(design)
         except KeyboardInterrupt:

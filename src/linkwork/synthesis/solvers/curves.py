@@ -19,6 +19,7 @@ from linkwork.synthesis.improvement.curves import (
     SliderCrankCurves,
 )
 from linkwork.synthesis.improvement.settings import Improvement
+from linkwork.synthesis.lane_problems import part_of
 from linkwork.synthesis.loops.candidates import Candidates, Drive, LoopKind
 from linkwork.synthesis.solvers.result import SolvedTask
 from linkwork.synthesis.tasks.conditions import LENGTHS, Wishes
@@ -61,11 +62,7 @@ def solve_curve(task: Task, wishes: Wishes, progress: Callable[[float], None] | 
     fitted: list[FittedCurves] = []
     for k, kind in enumerate(kinds):
         rng = np.random.default_rng([settings.seed, k])
-
-        def tell(fraction: float, done: int = k) -> None:
-            if progress is not None:
-                progress((done + fraction) / len(kinds))
-
+        tell = part_of(progress, k / len(kinds), 1.0 / len(kinds))
         fitted.append(fit_curve(kind, goal, starts, rng, tell))
         if not fitted[-1].finished:
             break

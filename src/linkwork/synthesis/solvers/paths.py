@@ -11,6 +11,7 @@ import numpy as np
 
 from linkwork.core.foundation.arrays import ComplexArray
 from linkwork.core.foundation.statuses import Completeness
+from linkwork.synthesis.lane_problems import part_of
 from linkwork.synthesis.loops.candidates import Candidates, LoopKind
 from linkwork.synthesis.poses.pose_families import drawn_within, is_tolerant
 from linkwork.synthesis.precision.four_bar_positions import FourBarPositions
@@ -155,17 +156,9 @@ class _SharedProgress:
 
     def part(self, left: int) -> Callable[[float], None] | None:
         """The progress function of the first of ``left`` equal parts; earlier parts are done."""
-        if self._progress is None:
-            return None
-        begin = self._done
-        share = (1.0 - begin) / left
+        begin, share = self._done, (1.0 - self._done) / left
         self._done += share
-
-        def tell(fraction: float) -> None:
-            assert self._progress is not None
-            self._progress(begin + share * fraction)
-
-        return tell
+        return part_of(self._progress, begin, share)
 
 
 def _near(

@@ -91,33 +91,21 @@ class Dyad:
         return {k: list(v) if isinstance(v, tuple) else v for k, v in vars(self).items()}
 
 
-@dataclass(frozen=True, kw_only=True, eq=False)
-class JudgedDesigns:
-    """Designs of one kind with one driven link, and the verdicts on them.
-
-    ``zero``, one of ``zeros``, and ``output`` are those of :class:`SolvedTask`.
-    """
-
-    task: Task
-    candidates: Candidates
-    drive: Drive
-    wishes: Wishes
-    verdicts: Verdicts
-    zero: tuple[float, float] | None
-    output: str
-
-
-@internal("group", "index", "drive", "design")
+@internal("group", "index", "zero", "output", "drive", "design")
 @dataclass(frozen=True, kw_only=True, eq=False, repr=False)
 class SynthesizedDesign(JudgedDesign):
     """One design of a loop with its verdict.
 
     Parameters
     ----------
-    group : JudgedDesigns
-        The designs of its kind.
+    group : Verdicts
+        Those on the designs of its kind.
     index : int
         Its place among them.
+    zero : (float, float), optional
+        One of ``zeros`` of :class:`SolvedTask`.
+    output : str
+        That of :class:`SolvedTask`.
 
     Examples
     --------
@@ -128,8 +116,10 @@ class SynthesizedDesign(JudgedDesign):
     (1, ())
     """
 
-    group: JudgedDesigns
+    group: Verdicts
     index: int
+    zero: tuple[float, float] | None
+    output: str
 
     @property
     def drive(self) -> Drive:
@@ -144,49 +134,46 @@ class SynthesizedDesign(JudgedDesign):
     @cached_property
     def kinds(self) -> tuple[DefectKind, ...]:
         """The kinds of its defects; none for a sound design."""
-        defects = self.group.verdicts.defects
-        return tuple(kind for kind, wrong in defects.items() if wrong[self.index])
+        return tuple(kind for kind, wrong in self.group.defects.items() if wrong[self.index])
 
     @cached_property
     def defects(self) -> tuple[Defect, ...]:
         """Its defects in words; none for a sound design."""
-        group = self.group
-        return defects_of(group.task, group.candidates, group.drive, group.verdicts, self.index)
+        return defects_of(self.task, self.group, self.index)
 
     @property
     def transmission(self) -> float:
         """A lower bound of the transmission angle over the driven range, NaN where that is not
         defined [file's angle unit].
         """
-        least = float(self.group.verdicts.transmission[self.index])
-        return self.group.task.angle.from_radians(least)
+        return self.task.angle.from_radians(float(self.group.transmission[self.index]))
 
     @property
     def size(self) -> float:
         """The longest link, or the distance of the fixed pivots [length]."""
-        return float(self.group.verdicts.size[self.index])
+        return float(self.group.size[self.index])
 
     @property
     def shortest(self) -> float:
         """The shortest link, or the distance of the fixed pivots [length]."""
-        return float(self.group.verdicts.shortest[self.index])
+        return float(self.group.shortest[self.index])
 
     @property
     def error(self) -> float:
         """How far positions are missed, the largest distance, or the structural error."""
         miss = float(self.group.candidates.miss[self.index])
-        return self.task.angle.from_radians(miss) if self.group.output == "rocker" else miss
+        return self.task.angle.from_radians(miss) if self.output == "rocker" else miss
 
     @cached_property
     def design(self) -> Design:
         """Its points at the first position, and its driven range."""
         group, k = self.group, self.index
-        travel, loops = group.verdicts.travel, group.verdicts.loops
+        travel, loops = group.travel, group.loops
         inputs = loops.input[k] if self.kinds else travel.place[k] + loops.origin[k]
         ends = inputs[[0, -1]]
         if not self.kinds:
             ends = np.array([travel.first[k], travel.last[k]]) + loops.origin[k]
-        return Design.of(group.candidates, k, group.drive, inputs, ends, group.zero)
+        return Design.of(group.candidates, k, group.drive, inputs, ends, self.zero)
 
     @property
     def inputs(self) -> tuple[float, ...]:
@@ -197,7 +184,7 @@ class SynthesizedDesign(JudgedDesign):
     @cached_property
     def linkage(self) -> Linkage:
         """The mechanism, with the name of its design."""
-        return linkage_of(self.design, self.task, self._name, self.group.output)
+        return linkage_of(self.design, self.task, self._name, self.output)
 
 
 @dataclass(frozen=True, kw_only=True, eq=False, repr=False)

@@ -17,7 +17,7 @@ from linkwork.core.foundation.rounding import EQUAL_ROWS
 from linkwork.core.foundation.statuses import Completeness
 from linkwork.core.foundation.values import check_flags
 from linkwork.core.results.listing.motion_listing import rounded_down
-from linkwork.synthesis.defects.verdicts import DefectKind, JudgedDesign, judge
+from linkwork.synthesis.defects.verdicts import DefectKind, JudgedDesign, Verdicts, judge
 from linkwork.synthesis.improvement.settings import FITS, Improvement
 from linkwork.synthesis.loops.candidates import Candidates, Drive
 from linkwork.synthesis.loops.driven_loop import Range
@@ -34,7 +34,6 @@ from linkwork.synthesis.solvers.motions import solve_motion
 from linkwork.synthesis.solvers.paths import solve_path
 from linkwork.synthesis.solvers.result import (
     Dyad,
-    JudgedDesigns,
     Solutions,
     SolvedTask,
     Synthesis,
@@ -307,22 +306,15 @@ def _of_loops(task: Task, progress: Callable[[float], None] | None = None) -> Sy
     """Designs of one loop."""
     solved = SOLVERS[task.kind](task, wishes_of(task, Drive.A0), progress)
     judged = [
-        JudgedDesigns(
-            task=task,
-            candidates=part,
-            drive=drive,
-            wishes=(wishes := _measured(wishes_of(task, drive), part, zero)),
-            verdicts=judge(part, drive, wishes),
-            zero=zero,
-            output=solved.output,
-        )
+        (judge(part, drive, _measured(wishes_of(task, drive), part, zero)), zero)
         for part, zero in zip_longest(solved.candidates, solved.zeros)
         for drive in part.drives
         if drive in solved.drives
     ]
     if task.function is not None:
         solved = replace(solved, message=solved.message + task.function.note)
-    return _synthesis(task, solved, _ranked_loops(task, judged), sum(map(len, solved.candidates)))
+    designs = _ranked_loops(task, judged, solved.output)
+    return _synthesis(task, solved, designs, sum(map(len, solved.candidates)))
 
 
 def _synthesis(
@@ -534,25 +526,28 @@ def _beyond(task: Task) -> float:
     return task.in_radians(float(abs(goal.points()[0][0] - goal.input[0])))
 
 
-def _ranked_loops(task: Task, judged: list[JudgedDesigns]) -> tuple[SynthesizedDesign, ...]:
+def _ranked_loops(
+    task: Task, judged: Sequence[tuple[Verdicts, tuple[float, float] | None]], output: str
+) -> tuple[SynthesizedDesign, ...]:
     """Designs of loops, which were judged together."""
     designs = [
         SynthesizedDesign(
             task=task,
             mechanism=part.candidates.kind.value,
             driven=part.drive.value,
-            error_unit=task.angle.value if part.output == "rocker" else task.length,
+            error_unit=task.angle.value if output == "rocker" else task.length,
             group=part,
             index=k,
+            zero=zero,
+            output=output,
         )
-        for part in judged
+        for part, zero in judged
         for k in range(len(part.candidates))
     ]
     scores = [
-        _scores(task, part.verdicts.transmission, part.verdicts.size, part.candidates.miss)
-        for part in judged
+        _scores(task, part.transmission, part.size, part.candidates.miss) for part, _ in judged
     ]
-    refused = [bool(wrong) for part in judged for wrong in ~part.verdicts.sound]
+    refused = [bool(wrong) for part, _ in judged for wrong in ~part.sound]
     return _ranked(task, designs, refused, np.concatenate([np.zeros(0), *scores]))
 
 

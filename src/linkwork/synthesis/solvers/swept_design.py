@@ -20,7 +20,14 @@ from linkwork.core.mechanism.linkage import Draft
 from linkwork.core.results.limit import LimitKind
 from linkwork.core.results.motion import Motion, branch_end
 from linkwork.core.results.quantities.rows import TRANSMISSION_ANGLE
-from linkwork.synthesis.defects.verdicts import Defect, DefectKind, JudgedDesign, tolerance_message
+from linkwork.synthesis.defects.verdicts import (
+    Defect,
+    DefectKind,
+    JudgedDesign,
+    lengths_message,
+    order_message,
+    tolerance_message,
+)
 from linkwork.synthesis.improvement.proved_design import ImprovedDesign
 from linkwork.synthesis.improvement.whole_motion import least_in_rows
 from linkwork.synthesis.tasks.conditions import (
@@ -213,9 +220,7 @@ class SweptDesign(JudgedDesign):
         if reach.size and (np.nan_to_num(misses) > reach).any():
             yield DefectKind.TOLERANCE, tolerance_message(misses, reach, task.length)
         if self.wishes.ordered and task.positions and not _is_in_order(self.improved.inputs):
-            order = np.argsort(self.improved.inputs, kind="stable") + 1
-            reason = f"the input passes the positions in the order {', '.join(map(str, order))}"
-            yield DefectKind.ORDER, reason
+            yield DefectKind.ORDER, order_message(self.improved.inputs)
         for reason in self.improved.broken:
             yield DefectKind.BOUND, reason
         yield from self._transmission_defects()
@@ -265,8 +270,7 @@ class SweptDesign(JudgedDesign):
         if len(lengths):
             shortest, longest = lengths.min(), lengths.max()
             if not self.wishes.allows(shortest, longest):
-                message = f"lengths from {shortest:.4g} to {longest:.4g} are out of bounds"
-                yield DefectKind.LENGTHS, message
+                yield DefectKind.LENGTHS, lengths_message(shortest, longest)
         yield from self._obstacle_defects()
 
     def _obstacle_defects(self) -> Iterator[tuple[DefectKind, str]]:
