@@ -140,22 +140,26 @@ class WholeMotion:
         middles, lows = [], []
         with np.errstate(all="ignore"):  # bounds of boxes without a proof are infinite
             for dyad in self.dyads:
-                one = self._direction(motions, boxes.span, dyad.pin, dyad.arms[0])
+                one, rate, error = self._direction(motions, boxes.span, dyad.pin, dyad.arms[0])
                 if dyad.guide is None:
-                    other, turned = (dyad.pin, dyad.arms[1]), 0.0
+                    ends, turned = (dyad.pin, dyad.arms[1]), 0.0
                 else:
                     # the block passes its force on across its line
-                    other, turned = dyad.guide.line, 0.5 * np.pi
-                two = self._direction(motions, boxes.span, *other)
-                angle = one.angle - two.angle - turned
-                reach = np.abs(one.rate - two.rate) * boxes.span + one.error + two.error
+                    ends, turned = dyad.guide.line, 0.5 * np.pi
+                two, rate_of_two, error_of_two = self._direction(motions, boxes.span, *ends)
+                angle = one - two - turned
+                reach = np.abs(rate - rate_of_two) * boxes.span + error + error_of_two
                 reach = np.where(boxes.holds, reach * PROOF_SLACK, np.inf)
                 middles.append(_folded(angle))
                 lows.append(_least_folded(angle, reach))
         return np.min(middles, axis=0), np.min(lows, axis=0)
 
-    def _direction(self, motions: PointMotions, span: Array, start: str, end: str) -> _Direction:
-        """The direction of the line between two points."""
+    def _direction(
+        self, motions: PointMotions, span: Array, start: str, end: str
+    ) -> tuple[Array, Array, Array]:
+        """The angle and the rate of the line between two points in the middle of boxes, and how far
+        it is from turning evenly [rad], (B,) each.
+        """
         a, b = self._number[start], self._number[end]
         line = motions.place[:, b] - motions.place[:, a]
         rate = (motions.rate[:, b] - motions.rate[:, a]) / line
@@ -165,7 +169,7 @@ class WholeMotion:
         # eq. (192)
         error = 0.5 * turned**2 / rest + np.arcsin(np.minimum(lost / rest, 1.0))
         error = np.where((rest > 0.0) & (lost < rest), error, np.inf)
-        return _Direction(angle=np.angle(line), rate=rate.imag, error=error)
+        return np.angle(line), rate.imag, error
 
     def contact(self, sides: Sequence[tuple[str, str]], circles: Array) -> Contact:
         """Whether sides between two points of a link come into circles.
@@ -206,17 +210,6 @@ class WholeMotion:
             return Contact(met=None, open=None)
         low, high = (end / self._unit for end in left.ends)
         return Contact(met=None, open=(float(low.min()), float(high.max())))
-
-
-@dataclass(frozen=True, kw_only=True, eq=False)
-class _Direction:
-    """``angle`` and ``rate`` of a line in the middle of boxes, how far it is from turning evenly:
-    ``error`` [rad], (B,) each.
-    """
-
-    angle: Array
-    rate: Array
-    error: Array
 
 
 def _folded(angle: Array) -> Array:

@@ -145,27 +145,46 @@ class SweptDesign(JudgedDesign):
         return float("nan") if motion is None else least_in_rows(motion)
 
     @cached_property
+    def _links(self) -> dict[str, tuple[str, ...]]:
+        """The points of the moving links."""
+        description = self.improved.description
+        if not isinstance(description, Draft):
+            return {}
+        return {name: held for name, held in description.links.items() if name != GROUND}
+
+    @property
+    def _sides(self) -> list[tuple[str, tuple[str, str]]]:
+        """The lines between two points of every moving link."""
+        return [
+            (name, ends) for name, held in self._links.items() for ends in combinations(held, 2)
+        ]
+
+    @property
+    def _pivots(self) -> dict[str, complex]:
+        """The fixed points of moving links."""
+        moving = {name for held in self._links.values() for name in held}
+        fixed = self.improved.description.links.get(GROUND, ()) if moving else ()
+        return {name: self.points[name] for name in fixed if name in moving}
+
+    @cached_property
     def _lengths(self) -> Array:
         """The lengths of links, and the distances of fixed pivots [length]."""
-        description, points = self.improved.description, self.points
-        if not isinstance(description, Draft) or not points:
-            return np.zeros(0)
-        moving = {p for name, ends in description.links.items() if name != GROUND for p in ends}
-        lengths = []
-        for name, ends in description.links.items():
-            held = [p for p in ends if name != GROUND or p in moving]
-            lengths += [abs(points[p] - points[q]) for p, q in combinations(held, 2)]
-        return np.array([length for length in lengths if length > 0.0])
+        points = self.points
+        ends = (
+            [ends for _, ends in self._sides] + [*combinations(self._pivots, 2)] if points else []
+        )
+        lengths = np.array([abs(points[p] - points[q]) for p, q in ends])
+        return lengths[lengths > 0.0]
 
     @property
     def size(self) -> float:
         """The longest link, or the largest distance of fixed pivots [length]."""
-        return float(self._lengths.max(initial=np.nan if not len(self._lengths) else 0.0))
+        return float(self._lengths.max()) if len(self._lengths) else float("nan")
 
     @property
     def shortest(self) -> float:
         """The shortest link, or distance of fixed pivots [length]."""
-        return float(self._lengths.min(initial=np.inf)) if len(self._lengths) else float("nan")
+        return float(self._lengths.min()) if len(self._lengths) else float("nan")
 
     @property
     def error(self) -> float:
@@ -261,7 +280,7 @@ class SweptDesign(JudgedDesign):
             yield from self._missed_dimensions()
         outside = [
             name
-            for name, place in self._pivots().items()
+            for name, place in self._pivots.items()
             if not self.wishes.within_region(np.array([place]), np.zeros(1))[0]
         ]
         if outside:
@@ -292,20 +311,11 @@ class SweptDesign(JudgedDesign):
             text = "not proved: the links may meet an obstacle between"
             yield DefectKind.NOT_PROVED, f"{text} {first} and {last}"
 
-    @cached_property
-    def _sides(self) -> list[tuple[str, tuple[str, str]]]:
-        """The lines between two points of every moving link."""
-        description = self.improved.description
-        if not isinstance(description, Draft):
-            return []
-        links = {name: held for name, held in description.links.items() if name != GROUND}
-        return [(name, ends) for name, held in links.items() for ends in combinations(held, 2)]
-
     def _missed_dimensions(self) -> Iterator[tuple[DefectKind, str]]:
         """Pivots and lengths that the task gives and the design does not have."""
         given, points, unit = self.task.given, self.points, self.task.length
         near = EQUAL_LENGTHS * self.size
-        pivots = np.array([*self._pivots().values()], dtype=complex)
+        pivots = np.array([*self._pivots.values()], dtype=complex)
         for place in given.fixed_pivots:
             if not np.abs(pivots - complex(*place)).min(initial=np.inf) <= near:
                 yield DefectKind.PIVOTS, f"no fixed pivot at ({place[0]:g}, {place[1]:g}) as given"
@@ -318,13 +328,6 @@ class SweptDesign(JudgedDesign):
             if abs(length - goal) > EQUAL_LENGTHS * goal:
                 message = f'the length "{name}" is {length:.6g} {unit}, given as {goal:g} {unit}'
                 yield DefectKind.LENGTHS, message
-
-    def _pivots(self) -> dict[str, complex]:
-        description = self.improved.description
-        if not isinstance(description, Draft):
-            return {}
-        moving = {p for name, ends in description.links.items() if name != GROUND for p in ends}
-        return {p: self.points[p] for p in description.links.get(GROUND, ()) if p in moving}
 
     def _meets_obstacle(self) -> bool:
         """Whether a side of a link comes nearer to a circle than its ends move between rows."""
