@@ -214,7 +214,7 @@ class Defect:
     """
 
     kind: DefectKind
-    between: tuple[int, int] | None
+    between: tuple[int, int] | None = None
     message: str
 
 

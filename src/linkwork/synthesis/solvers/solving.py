@@ -189,27 +189,28 @@ def advice_of(synthesis: Synthesis) -> str:
     if synthesis.most_restrictive is not None:
         return _attained(synthesis)
     if synthesis.task.kind == "improve":
-        if not synthesis.designs:
-            return _of_goals(synthesis)
-        unmoved = [one for one in synthesis.designs if one.kinds == (DefectKind.UNMOVED,)]
-        if unmoved:
-            return (
-                f"{unmoved[0].defects[0].message[:1].upper()}{unmoved[0].defects[0].message[1:]}."
-            )
-        settings = synthesis.task.improvement
-        wider = ", wider bounds" if settings is not None and settings.bounds else ""
-        text = (
-            f"The driven range is the table of {synthesis.task.mechanisms[0]}. Try more "
-            f"starts{wider}, targets nearer to its present values, or a part of the range: "
-            "[wanted] input = { from = …, to = … }."
-        )
-        return text if DefectKind.RANGE in synthesis.defects else ""
+        return _of_improvement(synthesis) if synthesis.designs else _of_goals(synthesis)
     if synthesis.designs and not synthesis.defects.keys() & {*_MOVING}:
         return ""
-    first, *others = _changes(synthesis)
-    steps = first + "".join(f", or {other}" for other in others)
     blame = "No requirement alone is to blame. " if synthesis.designs else ""
-    return f"{blame}Try to {steps}."
+    return f"{blame}Try to {', or '.join(_changes(synthesis))}."
+
+
+def _of_improvement(synthesis: Synthesis) -> str:
+    """Why nothing was improved, or what may give a sound design in the driven range."""
+    settings = synthesis.task.improvement
+    for design in synthesis.designs:
+        if design.kinds == (DefectKind.UNMOVED,):
+            reason = design.defects[0].message
+            return f"{reason[:1].upper()}{reason[1:]}."
+    if DefectKind.RANGE not in synthesis.defects:
+        return ""
+    wider = ", wider bounds" if settings is not None and settings.bounds else ""
+    return (
+        f"The driven range is the table of {synthesis.task.mechanisms[0]}. Try more "
+        f"starts{wider}, targets nearer to its present values, or a part of the range: "
+        "[wanted] input = { from = …, to = … }."
+    )
 
 
 def near_misses(synthesis: Synthesis) -> list[int]:
@@ -241,24 +242,22 @@ def _of_goals(synthesis: Synthesis) -> str:
     return f"{why} linkwork sweep {name} --columns shows the values of {shown}."
 
 
-def _changes(synthesis: Synthesis) -> Iterator[str]:
+def _changes(synthesis: Synthesis) -> list[str]:
     """Changes of a task that give further designs, the smallest first."""
-    task = synthesis.task
+    task, given = synthesis.task, synthesis.task.given
     if task.function is not None:
-        yield "change the ranges of input and output"
-        return
-    if task.kind == "motion" and not {*MECHANISMS} <= {*task.mechanisms}:
-        other = next(name for name in MECHANISMS if name not in task.mechanisms)
-        yield f'allow other kinds of mechanism, such as "{other}"'
-    if task.wanted.region:
-        yield "enlarge the region of fixed pivots"
-    if task.given.fixed_pivots or task.given.moving_pivots or task.given.lengths:
-        yield "give fewer pivots and lengths"
-    if synthesis.starts:
-        yield "search from more starts"
-    elif not any(position.tolerance for position in task.positions):
-        yield "give positions a tolerance"
-    yield "move a position or leave it out"
+        return ["change the ranges of input and output"]
+    others = [name for name in MECHANISMS if name not in task.mechanisms and task.kind == "motion"]
+    tolerant = any(position.tolerance for position in task.positions)
+    changes = {
+        f'allow other kinds of mechanism, such as "{"".join(others[:1])}"': others,
+        "enlarge the region of fixed pivots": task.wanted.region,
+        "give fewer pivots and lengths": given.fixed_pivots or given.moving_pivots or given.lengths,
+        "search from more starts": synthesis.starts,
+        "give positions a tolerance": not (synthesis.starts or tolerant),
+        "move a position or leave it out": True,
+    }
+    return [change for change, helps in changes.items() if helps]
 
 
 # ----------------------------------------------------------------------
@@ -331,29 +330,25 @@ def _synthesis(
 
 def _what_helps(task: Task) -> str:
     """The first change of a task of a function with sound designs, and their number."""
-    for change, goal in _other_goals(task):
+    goal = task.function
+    changes: dict[str, FunctionGoal] = {}
+    if goal is not None and goal.starts_fixed:
+        free = goal.freed
+        spans = [f"{name} = {getattr(free, name)[1]:g}" for name in free.free]
+        change = "leave out input and output" if goal.pairs else " and ".join(spans)
+        changes[f"With free start angles ({change})"] = free
+    for fit in FITS if goal is not None else ():
+        if fit != goal.fit:
+            changes[f'With fit = "{fit}"'] = replace(goal, fit=fit)
+    for change, other in changes.items():
         try:
-            count = _of_loops(replace(task, function=goal)).sound
+            count = _of_loops(replace(task, function=other)).sound
         except MechanismError:  # more pairs than free start angles meet
             continue
         if count:
             designs = "is 1 design" if count == 1 else f"are {count} designs"
             return f"{change} there {designs} without defects."
     return ""
-
-
-def _other_goals(task: Task) -> Iterator[tuple[str, FunctionGoal]]:
-    goal = task.function
-    if goal is None:
-        return
-    if goal.starts_fixed:
-        free = goal.freed
-        spans = [f"{name} = {getattr(free, name)[1]:g}" for name in free.free]
-        change = "leave out input and output" if goal.pairs else " and ".join(spans)
-        yield f"With free start angles ({change})", free
-    for fit in FITS:
-        if fit != goal.fit:
-            yield f'With fit = "{fit}"', replace(goal, fit=fit)
 
 
 def _measured(wishes: Wishes, part: Candidates, zero: tuple[float, float] | None) -> Wishes:

@@ -207,7 +207,7 @@ class SweptDesign(JudgedDesign):
         messages = tuple(self._defect_messages())
         if not messages and not self.improved.sound:
             messages = ((DefectKind.NOT_PROVED, self.improved.message),)
-        return tuple(Defect(kind=kind, between=None, message=message) for kind, message in messages)
+        return tuple(Defect(kind=kind, message=message) for kind, message in messages)
 
     def _defect_messages(self) -> Iterator[tuple[DefectKind, str]]:
         motion, task = self._motion, self.task

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from dataclasses import dataclass, replace
 from functools import cached_property
 from itertools import combinations
@@ -74,22 +74,20 @@ class WattGroup:
 
     def defect(self, k: int) -> Defect | None:
         """The circuit or branch defect of a design, or why it is not decided."""
-        travels = dict(zip(("A0 A B B0", "B0 C D C0"), self.travels, strict=True))
-        return next(self._defects(travels, k), None)
-
-    def _defects(self, travels: dict[str, Travel], k: int) -> Iterator[Defect]:
-        decided = {name: travel for name, travel in travels.items() if travel.decided[k]}
-        for kind, word in ((DefectKind.CIRCUIT, "circuit"), (DefectKind.BRANCH, "branch")):
-            for name, travel in decided.items():
+        travels = [*zip(("A0 A B B0", "B0 C D C0"), self.travels, strict=True)]
+        for kind in (DefectKind.CIRCUIT, DefectKind.BRANCH):
+            word = kind.name.lower()
+            for name, travel in travels:
                 after = int(getattr(travel, word)[k]) + 1
-                if after != NOWHERE + 1:
+                if travel.decided[k] and after != NOWHERE + 1:
                     message = f"{word} of the loop {name} changes between positions {after} and"
-                    yield Defect(
-                        kind=kind, between=(after, after + 1), message=f"{message} {after + 1}"
-                    )
-        for name in travels.keys() - decided.keys():
-            message = f"not proved: to rounding, the loop {name} is at a dead point or change point"
-            yield Defect(kind=DefectKind.NOT_PROVED, between=None, message=message)
+                    message = f"{message} {after + 1}"
+                    return Defect(kind=kind, between=(after, after + 1), message=message)
+        for name, travel in travels:
+            if not travel.decided[k]:
+                message = f"not proved: to rounding, the loop {name} is at a dead point or change"
+                return Defect(kind=DefectKind.NOT_PROVED, message=f"{message} point")
+        return None
 
 
 def watt_group(task: Task, bars: WattSixBars, kept: IndexArray, zero: Array | None) -> WattGroup:
