@@ -259,22 +259,14 @@ def _crank_and_slider(driven: Candidates) -> DrivenLoops:
     height = dot(normal, driven.fixed_a - driven.fixed_b)
     size = np.maximum(np.maximum(a, c), np.abs(driven.fixed_a - driven.fixed_b))
     doubt = doubt_of(driven, size)
-    with np.errstate(all="ignore"):
-        cosine = np.stack([np.zeros_like(c), 1.0 / c], axis=1)
     return _loops(
         doubt,
         input=phase_of(crank),
         input_error=angle_error(a, doubt),
         origin=phase_of(normal),
-        q0=height,
-        q1=a,
-        low=-c,
-        high=c,
-        upper=height + a - c,
-        lower=a - height - c,
         side=dot(rod, driven.direction[:, None]),
         half=cross(normal[:, None], crank),
-        cosine=cosine,
+        **_swing(height, a, c),
     )
 
 
@@ -322,23 +314,30 @@ def _block_and_rocker(driven: Candidates) -> DrivenLoops:
     h = cross(lines[:, 0], to_block[:, 0])
     size = np.maximum(np.maximum(b, g), np.abs(to_block).max(axis=1))
     doubt = 2.0 * doubt_of(driven, size)
-    with np.errstate(all="ignore"):
-        cosine = np.stack([np.zeros_like(b), 1.0 / b], axis=1)
     return _loops(
         doubt,
         input=phase_of(lines),
         input_error=angle_error(size, doubt),
         origin=phase_of(ground) + 0.5 * np.pi,
-        q0=-h,
-        q1=g,
-        low=-b,
-        high=b,
-        upper=g - h - b,
-        lower=g + h - b,
         side=dot(rocker, lines),
         half=cross(1j * ground[:, None], lines),
-        cosine=cosine,
+        **_swing(-h, g, b),
     )
+
+
+def _swing(q0: Array, q1: Array, length: Array) -> dict[str, Array]:
+    """Limits of a point that swings across a line, q0 + q1 cos(φ - φ0), held by a link."""
+    with np.errstate(all="ignore"):
+        cosine = np.stack([np.zeros_like(length), 1.0 / length], axis=1)
+    return {
+        "q0": q0,
+        "q1": q1,
+        "low": -length,
+        "high": length,
+        "upper": q0 + q1 - length,
+        "lower": q1 - q0 - length,
+        "cosine": cosine,
+    }
 
 
 def _block_and_slider(driven: Candidates) -> DrivenLoops:
