@@ -331,15 +331,15 @@ def _synthesis(
 def _what_helps(task: Task) -> str:
     """The first change of a task of a function with sound designs, and their number."""
     goal = task.function
+    if goal is None:
+        return ""
     changes: dict[str, FunctionGoal] = {}
-    if goal is not None and goal.starts_fixed:
+    if goal.starts_fixed:
         free = goal.freed
         spans = [f"{name} = {getattr(free, name)[1]:g}" for name in free.free]
         change = "leave out input and output" if goal.pairs else " and ".join(spans)
         changes[f"With free start angles ({change})"] = free
-    for fit in FITS if goal is not None else ():
-        if fit != goal.fit:
-            changes[f'With fit = "{fit}"'] = replace(goal, fit=fit)
+    changes |= {f'With fit = "{fit}"': replace(goal, fit=fit) for fit in FITS if fit != goal.fit}
     for change, other in changes.items():
         try:
             count = _of_loops(replace(task, function=other)).sound
@@ -375,19 +375,17 @@ def _sound_designs(task: Task) -> Callable[[Candidates], int]:
 def _improved(task: Task, progress: Callable[[float], None] | None) -> Synthesis:
     """Improved designs, sound ones by falling score."""
     designs, starts, interrupted = improve_mechanism(task, wishes_of(task, Drive.A0), progress)
-    front = (task.improvement or Improvement()).front
+    settings = task.improvement or Improvement()
+    rank = partial(_ranked_alone, task, designs, in_order=bool(settings.front))
     try:
-        ranked = _ranked_alone(task, designs, in_order=bool(front))
+        ranked = rank()
     except KeyboardInterrupt:
         # verdicts so far are kept; a further interruption ends the rest
-        interrupted, ranked = True, _ranked_alone(task, designs, in_order=bool(front))
-    seed = (task.improvement or Improvement()).seed
-    kind = (
-        "a front of designs, each the best one in some goal or trade-off,"
-        if front
-        else "different fits"
-    )
-    message = f"a sample: {kind} from {starts} starts with seed {seed}"
+        interrupted, ranked = True, rank()
+    kind = "different fits"
+    if settings.front:
+        kind = "a front of designs, each the best one in some goal or trade-off,"
+    message = f"a sample: {kind} from {starts} starts with seed {settings.seed}"
     message += _of_motion(task, ranked)
     message += "" if task.curve is None else task.curve.note
     count = len(designs)

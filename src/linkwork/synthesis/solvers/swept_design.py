@@ -146,33 +146,34 @@ class SweptDesign(JudgedDesign):
 
     @cached_property
     def _links(self) -> dict[str, tuple[str, ...]]:
-        """The points of the moving links."""
+        """The points of the links, of the ground those of moving links."""
         description = self.improved.description
-        if not isinstance(description, Draft):
-            return {}
-        return {name: held for name, held in description.links.items() if name != GROUND}
+        links = dict(description.links) if isinstance(description, Draft) else {}
+        fixed = links.pop(GROUND, ())
+        moving = {name for held in links.values() for name in held}
+        return {**links, GROUND: tuple(name for name in fixed if name in moving)}
 
     @property
     def _sides(self) -> list[tuple[str, tuple[str, str]]]:
         """The lines between two points of every moving link."""
         return [
-            (name, ends) for name, held in self._links.items() for ends in combinations(held, 2)
+            (name, ends)
+            for name, held in self._links.items()
+            for ends in combinations(held, 2)
+            if name != GROUND
         ]
 
     @property
     def _pivots(self) -> dict[str, complex]:
         """The fixed points of moving links."""
-        moving = {name for held in self._links.values() for name in held}
-        fixed = self.improved.description.links.get(GROUND, ()) if moving else ()
-        return {name: self.points[name] for name in fixed if name in moving}
+        return {name: self.points[name] for name in self._links[GROUND]}
 
     @cached_property
     def _lengths(self) -> Array:
         """The lengths of links, and the distances of fixed pivots [length]."""
         points = self.points
-        ends = (
-            [ends for _, ends in self._sides] + [*combinations(self._pivots, 2)] if points else []
-        )
+        held = self._links.values() if points else ()
+        ends = [ends for names in held for ends in combinations(names, 2)]
         lengths = np.array([abs(points[p] - points[q]) for p, q in ends])
         return lengths[lengths > 0.0]
 
