@@ -19,10 +19,8 @@ from linkwork.synthesis.improvement.curves import (
     SliderCrankCurves,
 )
 from linkwork.synthesis.loops.candidates import Drive
-from linkwork.synthesis.loops.driven_loop import Range
 from linkwork.synthesis.solvers.curves import curve_goal_of
 from linkwork.synthesis.solvers.solving import remarks_on, wishes_of
-from linkwork.synthesis.tasks.conditions import Wishes
 
 # Kunjur and Krishnamurty's 18 points, as printed by Bulatovic et al. 2016
 _EIGHTEEN = [
@@ -143,8 +141,8 @@ def test_bounds_of_lengths_and_arms_have_the_derivatives_of_their_differences(
     kind: type[CouplerCurves],
 ) -> None:
     goal = CurveGoal(
-        points=np.array([0j, 1.0, 1.0 + 1.0j]), closed=False,
-        wishes=Wishes(transmission=0.3, longest=0.1),
+        points=np.array([0j, 1.0, 1.0 + 1.0j]), inputs=None, ordered=True, closed=False,
+        turns_fully=False, transmission=0.3, bounds={}, shortest=0.0, longest=0.1, ratio=np.inf,
     )  # fmt: skip
     constraints = CurveConstraints(kind, goal, 2)
     x = np.random.default_rng(1).uniform(0.5, 2.0, (2, len(kind.names)))
@@ -261,8 +259,8 @@ def test_the_least_transmission_angle_in_a_range_is_that_of_many_angles(
     start, stop = np.sort(rng.uniform(0.0, 7.0, (2, 40)), axis=0)
     for k in range(40):
         goal = CurveGoal(
-            points=np.array([0j, 1.0, 1.0 + 1.0j]), closed=False,
-            wishes=Wishes(transmission=0.3, range=Range(start=start[k], stop=stop[k])),
+            points=np.array([0j, 1.0, 1.0 + 1.0j]), closed=False, range=(start[k], stop[k]),
+            transmission=0.3,
         )  # fmt: skip
         x = rng.uniform(0.5, 2.0, (1, len(kind.names)))
         h, by_x = CurveConstraints(kind, goal, 1)._constraints(x)

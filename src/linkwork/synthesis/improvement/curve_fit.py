@@ -58,12 +58,11 @@ class CurveConstraints:
         """How far points are missed beyond their tolerances, (D, N), by the dimensions and by the
         angles, from the same of P - the points; ``None`` without tolerances.
         """
-        reach = self.goal.wishes.reach
-        if not reach.any():
+        if self.goal.reach is None:
             return None
         # a narrow tolerance keeps a narrow margin
-        margin = np.minimum(_MARGIN * self.goal.size, _MARGIN * reach)
-        h = np.abs(missed) - reach + margin
+        margin = np.minimum(_MARGIN * self.goal.size, _MARGIN * self.goal.reach)
+        h = np.abs(missed) - self.goal.reach + margin
         with np.errstate(all="ignore"):
             along = np.nan_to_num(missed.conj() / np.abs(missed))
             return self._of_reach.residuals(lanes, h, by_x, by_angle, unit=along)
@@ -75,7 +74,7 @@ class CurveConstraints:
     @property
     def _least_angle(self) -> float:
         """The least transmission angle that fits may have [rad]."""
-        return float(max(self.goal.wishes.transmission + ANGLE_MARGIN, _DEAD))
+        return float(max(self.goal.transmission + ANGLE_MARGIN, _DEAD))
 
     def _constraints(self, x: Array) -> tuple[Array, Array]:
         """h (D, K) and its derivatives, in lengths."""
@@ -96,17 +95,17 @@ class CurveConstraints:
         if goal.limited_range is not None:
             add(*self._transmission_in(dimensions, *goal.limited_range))
         lengths, by_x = self._lengths(dimensions)
-        if goal.wishes.shortest > 0.0:
-            add(goal.wishes.shortest - lengths, -by_x)
-        if np.isfinite(goal.wishes.longest):
-            add(lengths - goal.wishes.longest, by_x)
+        if goal.shortest > 0.0:
+            add(goal.shortest - lengths, -by_x)
+        if np.isfinite(goal.longest):
+            add(lengths - goal.longest, by_x)
             arms, arms_by_x = self._arms(dimensions)
-            add(arms - goal.wishes.longest, arms_by_x)
-        if np.isfinite(goal.wishes.ratio):
+            add(arms - goal.longest, arms_by_x)
+        if np.isfinite(goal.ratio):
             rows = np.arange(len(x))
             longest, shortest = lengths.argmax(axis=1), lengths.argmin(axis=1)
-            h = lengths[rows, longest] - goal.wishes.ratio * lengths[rows, shortest]
-            slope = by_x[rows, longest] - goal.wishes.ratio * by_x[rows, shortest]
+            h = lengths[rows, longest] - goal.ratio * lengths[rows, shortest]
+            slope = by_x[rows, longest] - goal.ratio * by_x[rows, shortest]
             add(h[:, None], slope[:, None])
         return np.concatenate(values, axis=1), np.concatenate(slopes, axis=1)
 
@@ -282,8 +281,8 @@ class _CurveProblem(LaneProblem):
         row_variables = RowVariables(
             least=-width if goal.range is None else 0.0,
             most=width,
-            in_order=goal.wishes.ordered and goal.inputs is None,
-            gap=gap if goal.wishes.ordered else 0.0,
+            in_order=goal.ordered and goal.inputs is None,
+            gap=gap if goal.ordered else 0.0,
             span=FULL_TURN - gap,
         )
         none = np.zeros(0, dtype=bool)

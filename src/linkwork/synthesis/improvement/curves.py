@@ -25,7 +25,6 @@ from linkwork.core.results.quantity import Kind
 from linkwork.synthesis.improvement.goals import PathGoal
 from linkwork.synthesis.improvement.settings import Points
 from linkwork.synthesis.lane_least_squares import Box, RowVariables
-from linkwork.synthesis.tasks.conditions import Wishes
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -292,32 +291,43 @@ class CurveGoal:
         In order of travel [length].
     inputs : (N,), optional
         Angles of the crank at the points, up to a common one [rad]; ``None``: free timing.
+    ordered : bool
+        Whether a free crank passes the points in their order.
     closed : bool
         Whether the points go around the whole curve.
+    turns_fully : bool
+        Whether the crank has to turn fully; on closed curves it has to.
+    range : (float, float), optional
+        The driven range of the crank, from the smaller angle to the larger one [rad]: all points
+        are passed in it.
+    transmission : float
+        The least transmission angle [rad]: over a whole turn if the crank turns fully, else over
+        its range, or without one at the points.
     bounds : Mapping[str, (float, float)]
         Bounds of dimensions by name [length], of ``input`` and ``direction`` [rad].
-    wishes : Wishes
-        The order of the points with free timing; whether the crank turns fully (on closed curves it
-        has to) or the range in which it passes all points; the least transmission angle over a
-        whole turn if it turns fully, else over its range, or without one at the points; bounds of
-        all lengths of links, ground included; and the largest distances from the points.
+    shortest, longest, ratio : float
+        Bounds of all lengths of links, ground included, and of their ratio.
+    reach : (N,), optional
+        The largest distances from the points that are allowed [length].
     """
 
     points: ComplexArray
     inputs: Array | None = None
+    ordered: bool = True
     closed: bool = True
+    turns_fully: bool = False
+    range: tuple[float, float] | None = None
+    transmission: float = 0.0
     bounds: Mapping[str, tuple[float, float]] = field(default_factory=dict)
-    wishes: Wishes = field(default_factory=Wishes)
+    shortest: float = 0.0
+    longest: float = np.inf
+    ratio: float = np.inf
+    reach: Array | None = None
 
     @property
     def must_turn(self) -> bool:
         """Whether the crank has to turn fully."""
-        return self.closed or (self.wishes.range is not None and self.wishes.range.turn)
-
-    @property
-    def range(self) -> tuple[float, float] | None:
-        """The driven range of the crank, from the smaller angle to the larger one [rad]."""
-        return None if self.wishes.range is None else self.wishes.range.ends
+        return self.turns_fully or self.closed
 
     @property
     def limited_range(self) -> tuple[float, float] | None:
@@ -379,10 +389,7 @@ class CurveGoal:
         for k, name in enumerate(kind.names):
             low, high = (-far, far)
             if k in kind.lengths:
-                low, high = (
-                    max(self.wishes.shortest, self.size / _FREE),
-                    min(self.wishes.longest, far),
-                )
+                low, high = max(self.shortest, self.size / _FREE), min(self.longest, far)
             low, high = self.bounds.get(name, (low, high))
             least.append(low)
             most.append(high)

@@ -109,12 +109,6 @@ class Range:
     start: float = 0.0
     stop: float = 0.0
 
-    @property
-    def ends(self) -> tuple[float, float] | None:
-        """The smaller and the larger input; ``None`` for a turn."""
-        both = min(self.start, self.stop), max(self.start, self.stop)
-        return None if self.turn else both
-
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Travel:

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator
-from dataclasses import replace
 
 import numpy as np
 
@@ -96,13 +95,23 @@ def curve_goal_of(task: Task, wishes: Wishes) -> CurveGoal:
     points = np.array([complex(*position.point) for position in task.positions])
     timed = task.positions[0].input is not None
     inputs = [task.in_radians(p.input or 0.0) for p in task.positions] if timed else None
-    driven = None if wishes.range is None else wishes.range.ends
+    driven, turns = None, wishes.range is not None and wishes.range.turn
+    if wishes.range is not None and not turns:
+        ends = wishes.range.start, wishes.range.stop
+        driven = min(ends), max(ends)
     goal = CurveGoal(
         points=points,
         inputs=None if inputs is None else np.array(inputs),
+        ordered=wishes.ordered,
         closed=is_closed(task, driven),
+        turns_fully=turns,
+        range=driven,
+        transmission=wishes.transmission,
         bounds=dict(_bounds(task, wishes)),
-        wishes=replace(wishes, longest=min(wishes.longest, usual_longest(task))),
+        shortest=wishes.shortest,
+        longest=min(wishes.longest, usual_longest(task)),
+        ratio=wishes.ratio,
+        reach=wishes.reach if wishes.reach.any() else None,
     )
     low, high = goal.input_bounds
     if low > high:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -141,18 +141,18 @@ class FunctionWishes:
         self.ends = sorted(self.range or (float(u.min()), float(u.max())))
         self.kind = SliderCrankCurves if slides else FourBarCurves
         self.columns = [2, 4, 3] if slides else [4, 6, 5]
-        held = replace(
-            wishes,
-            range=span if self.range is None else None,
+        goal = CurveGoal(
+            points=np.array([0.0, 2.0 * size], dtype=complex),
+            closed=False,
+            turns_fully=span is not None and span.turn,
+            transmission=wishes.transmission,
             shortest=wishes.shortest * (1.0 + _MARGIN),
             longest=wishes.longest * (1.0 - _MARGIN),
             ratio=wishes.ratio * (1.0 - _MARGIN),
         )
-        points = np.array([0.0, 2.0 * size], dtype=complex)
-        goal = CurveGoal(points=points, closed=False, wishes=held)
         self.constraints = CurveConstraints(self.kind, goal, lanes)
-        limits = span or held.transmission or held.shortest
-        self.are_any = bool(limits or min(held.longest, held.ratio) < np.inf)
+        limits = span or goal.transmission or goal.shortest
+        self.are_any = bool(limits or min(goal.longest, goal.ratio) < np.inf)
 
     def _loops(self, x: Array) -> tuple[Array, Array, Array]:
         """Dimensions (D, P) of the same loops as curves, signs of theirs here, and the angles of
