@@ -39,7 +39,7 @@ from linkwork.synthesis.tasks.conditions import (
 from linkwork.synthesis.tasks.task import Task
 
 
-@internal("improved", "wishes", "place", "changed")
+@internal("improved", "wishes", "place", "changed", "of")
 @dataclass(frozen=True, kw_only=True, eq=False, repr=False)
 class SweptDesign(JudgedDesign):
     """A mechanism of any kind that is judged by a sweep, with its defects.
