@@ -30,8 +30,7 @@ def _values(
     q = np.stack([mechanism.solve(at=value).q for value in at]) if at else motion.q
     writer = DesignWriter(model, numbers)
     lanes = SolvedLanes(writer, x, q, goal.at, 2)
-    inputs = np.broadcast_to(goal.at, (2, len(goal.at)))
-    found = lanes.at(writer.written(np.array([x, x])), inputs, np.arange(2))
+    found = lanes.at(writer.written(np.array([x, x])), np.arange(2))
     value, by_x = goal.values(found)
     return value[1], by_x[1]
 

@@ -26,7 +26,7 @@ def test_gradients_of_lanes_are_those_of_the_single_mechanism() -> None:
     position = bar.solve(at=50.0)
     writer = DesignWriter(bar.model, numbers)
     lanes = SolvedLanes(writer, x, position.q[None], np.radians([50.0]), 2)
-    found = lanes.at(writer.written(np.array([x, x])), np.radians([[50.0], [50.0]]), np.arange(2))
+    found = lanes.at(writer.written(np.array([x, x])), np.arange(2))
     slopes = found.values([found.rows.place("B").v.real])[1][:, 0, 0]
     expected = [lw.design.gradient(bar, "B.x", by=names, at=50.0)[name] for name in names]
     # both solve the same linear equations: a few roundings

@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
-from dataclasses import dataclass, fields, replace
-from typing import Any, Self
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from typing import Any
 
 import numpy as np
 
-from linkwork.core.foundation.arrays import Array, BoolArray, IndexArray
+from linkwork.core.foundation.arrays import Array, Batch, BoolArray, IndexArray
 from linkwork.core.foundation.rounding import EPSILON
 
 
@@ -119,7 +119,7 @@ _SINGULAR = 1e-13  # of a diagonal entry: keeps the matrix regular
 
 
 @dataclass(frozen=True, eq=False)
-class Residuals:
+class Residuals(Batch):
     """Residuals of D lanes with their derivatives; NaN where they do not exist.
 
     Parameters
@@ -139,29 +139,11 @@ class Residuals:
     shared: Array
     shared_by_x: Array
 
-    def take(self, which: BoolArray) -> Residuals:
-        """Those of some lanes."""
-        parts: list[Any] = [None if part is None else part[which] for part in self._parts]
-        return Residuals(*parts)
-
     def replaced(self, which: BoolArray, other: Residuals) -> Residuals:
         """Those of another place in some lanes."""
-        parts: list[Any] = [
-            None if old is None or new is None else _either(which, new, old)
-            for old, new in zip(self._parts, other._parts, strict=True)
-        ]
-        return Residuals(*parts)
-
-    @classmethod
-    def joined(cls, parts: Sequence[Self]) -> Self:
-        """Those of several parts in one."""
-        columns = zip(*(part._parts for part in parts), strict=True)
-        every: list[Any] = [None if each[0] is None else np.concatenate(each) for each in columns]
-        return cls(*every)
-
-    @property
-    def _parts(self) -> tuple[Any, ...]:
-        return tuple(getattr(self, field.name) for field in fields(self))
+        there = other._arrays
+        parts: Any = {name: _either(which, there[name], old) for name, old in self._arrays.items()}
+        return replace(self, **parts)
 
     @property
     def total(self) -> Array:
@@ -181,7 +163,7 @@ _ANYWHERE = RowVariables()
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
-class LaneFit:
+class LaneFit(Batch):
     """Where D lanes are.
 
     Parameters
@@ -221,17 +203,10 @@ class LaneFit:
             | (self.total == 0.0)
         )
 
-    def take(self, index: IndexArray | BoolArray) -> LaneFit:
-        """Some of the lanes, in the order of ``index``."""
-        return replace(self, **{name: getattr(self, name)[index] for name in _ARRAYS})
-
     def put(self, index: IndexArray, part: LaneFit) -> None:
         """Replace some of the lanes."""
-        for name in _ARRAYS:
-            getattr(self, name)[index] = getattr(part, name)
-
-
-_ARRAYS = tuple(field.name for field in fields(LaneFit) if field.name != "interrupted")
+        for name, x in self._arrays.items():
+            x[index] = getattr(part, name)
 
 
 def starts_of(x: Array, t: Array) -> LaneFit:

@@ -134,6 +134,17 @@ def powered(residuals: Residuals, power: int, largest: Array, counted: BoolArray
 _PART = 8  # lanes of one thread, of many rows
 _ROWS = 4000  # of all lanes of a thread: fewer would take as long
 
+#: Called with the finished fraction.
+Progress = Callable[[float], None]
+
+
+def part_of(progress: Progress | None, begin: float, share: float) -> Progress | None:
+    """The progress of a part of the work, which begins at a fraction of it and has this share."""
+    if progress is None:
+        return None
+    return lambda fraction: progress(begin + share * fraction)
+
+
 #: Works on lanes, and calls its second argument before each step.
 Work = Callable[[IndexArray, Callable[[], None]], None]
 
@@ -161,7 +172,7 @@ class LaneWork:
 
     def __init__(self, rows: int, most: int) -> None:
         self.rows, self.most = rows, most
-        self.tell: Callable[[float], None] | None = None
+        self.tell: Progress | None = None
         self.whole, self.done, self.share_of_lanes = 1.0, 0.0, 1.0
         self.stopped = False
 

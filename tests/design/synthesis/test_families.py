@@ -242,7 +242,6 @@ def test_designs_with_given_pivots_are_proved_through_all_four_poses(key: str) -
         exact = 5 + complex(*own.moving) * np.exp(1j * np.radians(20))
     pivot = round(exact.real, 5), round(exact.imag, 5)
     found = lw.Task.motion(poses, mechanism="four-bar", given={key: [pivot]}).solve()
-    assert "given pivots are moved by up to" in found.message
     assert found.dyads[0].proved
     assert found.dyads[0].error < 1e-9
     assert found.linkages > 5

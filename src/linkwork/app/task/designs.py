@@ -207,7 +207,7 @@ def design_found(synthesis: Synthesis, index: int) -> DesignFound:
     group, k = design.group, design.index
     candidate, drive = group.candidates.take(slice(k, k + 1)), group.drive
     one = np.array([k])
-    loops, travel = group.verdicts.loops.take(one), group.verdicts.travel
+    loops, travel = group.loops.take(one), group.travel
     at = (candidate.moving_a[0], candidate.moving_b[0], candidate.guided[0])
     rows: tuple[tuple[float, ...], ...] = ()
     marks: tuple[float, ...] = ()

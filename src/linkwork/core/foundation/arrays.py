@@ -1,11 +1,12 @@
-"""Types of arrays, small matrices, stacked systems, disjoint sets."""
+"""Types of arrays, small matrices, stacked systems, batches, disjoint sets."""
 
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from contextlib import suppress
-from typing import TYPE_CHECKING, Any, TypeVar, overload
+from dataclasses import fields, replace
+from typing import TYPE_CHECKING, Any, Self, TypeVar, overload
 
 import numpy as np
 
@@ -119,6 +120,34 @@ def _each(function: Callable[..., Any], *stacks: Any) -> Any:
             with suppress(np.linalg.LinAlgError):
                 found[k] = function(*own)
         return found
+
+
+# ----------------------------------------------------------------------
+# Data classes that hold many things of one kind.
+
+
+class Batch:
+    """A data class with arrays, in which each thing has one row; other fields belong to all."""
+
+    @property
+    def _arrays(self) -> dict[str, AnyArray]:
+        every = {field.name: getattr(self, field.name) for field in fields(self)}  # type: ignore[arg-type]  # a data class
+        return {name: x for name, x in every.items() if isinstance(x, np.ndarray)}
+
+    def take(self, index: IndexArray | BoolArray | slice) -> Self:
+        """Some of the things, in the order of ``index``."""
+        some: Any = {name: x[index] for name, x in self._arrays.items()}
+        return replace(self, **some)  # type: ignore[type-var]  # a data class
+
+    @classmethod
+    def joined(cls, parts: Iterable[Self]) -> Self:
+        """The things of several batches, in their order."""
+        first, *others = parts
+        every: Any = {
+            name: np.concatenate([x, *(getattr(part, name) for part in others)])
+            for name, x in first._arrays.items()
+        }
+        return replace(first, **every)  # type: ignore[type-var]  # a data class
 
 
 # ----------------------------------------------------------------------

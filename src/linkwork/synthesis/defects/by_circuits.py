@@ -376,7 +376,7 @@ def _changes(kind: DefectKind, k: int) -> Defect:
 
 
 def _not_proved(why: str) -> Defect:
-    return Defect(kind=DefectKind.NOT_PROVED, between=None, message=f"not proved: {why}")
+    return Defect(kind=DefectKind.NOT_PROVED, message=f"not proved: {why}")
 
 
 def _at_limit(limit: str, k: int) -> Defect:
@@ -394,4 +394,4 @@ def _unreached(listed: Assemblies, k: int) -> Defect:
     message = f"no position of the mechanism has the input of position {k + 1}"
     if not listed.completeness.complete:
         return _not_proved(message)
-    return Defect(kind=DefectKind.RANGE, between=None, message=message)
+    return Defect(kind=DefectKind.RANGE, message=message)

@@ -5,9 +5,9 @@ from __future__ import annotations
 import numpy as np
 
 from linkwork.core.foundation.arrays import Array, BoolArray, ComplexArray, IndexArray
-from linkwork.synthesis.loops.candidates import Candidates, Drive, LoopKind
+from linkwork.synthesis.loops.candidates import Candidates, Drive, LoopKind, Side
 from linkwork.synthesis.loops.driven_loop import Travel, pivots_at
-from linkwork.synthesis.loops.limits import DrivenLoops, cross, guide_speeds, meeting
+from linkwork.synthesis.loops.limits import DrivenLoops, cross, meeting
 from linkwork.synthesis.tasks.conditions import Wishes, distances_to_segments
 
 _PIECES = 64  # of a driven range, to begin with
@@ -88,7 +88,7 @@ def _corner(loops: Candidates, a: ComplexArray, b: ComplexArray) -> ComplexArray
     """
     first, second, line = (loops.moving_a[:, 0], loops.moving_b[:, 0], loops.lines[:, 0])
     if loops.kind is LoopKind.OLDHAM:
-        start = meeting(loops.fixed_a, loops.lines_a[:, 0], loops.fixed_b, line)
+        start = _crossing(loops)
     else:
         start = first + 1j * cross(line, second - first) * line
     return np.asarray(a + (start - first) * (b - a) / (second - first))
@@ -98,31 +98,38 @@ def _fastest(
     candidates: Candidates, drive: Drive, loops: DrivenLoops, first: Array, last: Array
 ) -> Array:
     """A bound of the speed of every point of every link, per unit of the input, (D,)."""
-    other = candidates.driven_at_b() if drive is Drive.B0 else candidates
-    a, b, p = other.moving_a[:, 0], other.moving_b[:, 0], other.guided[:, 0]
+    driven, driver, other = candidates.driven_by(drive)
+    a, b, p = driven.moving_a[:, 0], driven.moving_b[:, 0], driven.guided[:, 0]
+    ground = driven.fixed_b - driven.fixed_a
     sine = np.sin(loops.least_transmission(first, last))
     with np.errstate(all="ignore"):
-        pivot = 1.0 / sine if drive is Drive.SLIDER else np.abs(a - other.fixed_a)
-        # the coupler turns fastest where the driving force is farthest from the line of the rocker
-        lever = 1.0 if drive is Drive.SLIDER else pivot
-        turning = lever / (np.abs(b - a) * sine)
-        if candidates.kind is LoopKind.INVERTED or not candidates.kind.has_crank:
-            bounds = _fastest_inverted if candidates.kind.has_crank else guide_speeds
-            pivot, turning = bounds(candidates, drive, loops, first, last)
-            a, b, p = candidates.moving_a[:, 0], candidates.moving_b[:, 0], candidates.guided[:, 0]
-        fastest = pivot + np.maximum(np.abs(b - a), np.abs(p - a)) * turning
+        if driver is not Side.BLOCK:
+            centre, speed = a, np.ones(len(driven))
+            if driver is Side.PIN:
+                speed = np.abs(a - driven.fixed_a)
+            lever = np.abs(b - a)
+            if other is Side.BLOCK:
+                # A moves across the line by at most its speed, at least q sin μ from the block
+                lever = np.sqrt(
+                    np.maximum(loops.extremes(first, last).min(axis=1) - loops.q_error, 0.0)
+                )
+            # the body turns fastest where the driving force is farthest from the line of the rocker
+            turning = speed / (lever * sine)
+        else:
+            centre, turning = b, np.ones(len(driven))
+            if other is Side.PIN:
+                speed = (np.abs(b - driven.fixed_b) + np.abs(ground)) / sine
+            elif other is Side.LINE:
+                h = np.abs(cross(driven.lines_a[:, 0], driven.fixed_a - b))
+                speed = (np.abs(cross(driven.direction, ground)) + h) / sine**2
+            else:
+                # the crossing of the body's lines runs around a circle through A0 and B0
+                centre, speed = _crossing(driven), np.abs(ground) / sine
+        farthest = np.max([np.abs(point - centre) for point in (a, b, p)], axis=0)
+        fastest = speed + farthest * turning
     return np.where(np.isfinite(fastest), fastest, np.inf)
 
 
-def _fastest_inverted(
-    candidates: Candidates, drive: Drive, loops: DrivenLoops, first: Array, last: Array
-) -> tuple[Array, Array]:
-    """Bounds of the speed of A, and of the turning of the coupler, of inverted slider-cranks."""
-    crank = np.abs(candidates.moving_a[:, 0] - candidates.fixed_a)
-    sine = np.sin(loops.least_transmission(first, last))
-    if drive is Drive.A0:
-        # A moves across the line by at most its speed, at least q sin μ from the block
-        nearest = np.sqrt(np.maximum(loops.extremes(first, last).min(axis=1) - loops.q_error, 0.0))
-        return crank, crank / (nearest * sine)
-    ground = np.abs(candidates.fixed_b - candidates.fixed_a)
-    return (crank + ground) / sine, np.ones_like(crank)
+def _crossing(loops: Candidates) -> ComplexArray:
+    """Where the body's lines through two blocks cross at the first position, (D,)."""
+    return meeting(loops.fixed_a, loops.lines_a[:, 0], loops.fixed_b, loops.lines[:, 0])

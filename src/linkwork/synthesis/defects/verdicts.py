@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
-from collections.abc import Iterator, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass
 from enum import Enum
 from typing import Any
@@ -16,9 +16,9 @@ from linkwork.core.mechanism.description import Description
 from linkwork.core.results.listing.motion_listing import rounded_down
 from linkwork.core.results.quantities.rows import TRANSMISSION_ANGLE
 from linkwork.synthesis.defects.obstacles import meets_obstacle
-from linkwork.synthesis.loops.candidates import Candidates, Drive, LoopKind
-from linkwork.synthesis.loops.driven_loop import NOWHERE, Travel, driven_loops, travel_of
-from linkwork.synthesis.loops.limits import DrivenLoops
+from linkwork.synthesis.loops.candidates import Candidates, Drive, Side
+from linkwork.synthesis.loops.driven_loop import NOWHERE, Travel, travel_of
+from linkwork.synthesis.loops.limits import DrivenLoops, driven_loops
 from linkwork.synthesis.tasks.conditions import Wishes
 from linkwork.synthesis.tasks.task import Task
 
@@ -53,6 +53,10 @@ class Verdicts:
 
     Parameters
     ----------
+    candidates : Candidates
+    drive : Drive
+    wishes : Wishes
+        In radians and units of length.
     loops : DrivenLoops
     travel : Travel
     transmission : (D,)
@@ -69,6 +73,9 @@ class Verdicts:
         designs that stay on one branch, obstacles for designs with at most one other defect.
     """
 
+    candidates: Candidates
+    drive: Drive
+    wishes: Wishes
     loops: DrivenLoops
     travel: Travel
     transmission: Array
@@ -139,6 +146,9 @@ def judge(group: Candidates, drive: Drive, wishes: Wishes) -> Verdicts:
         open_ & (transmission == 0.0) & ~defects[DefectKind.RANGE]
     )
     return Verdicts(
+        candidates=group,
+        drive=drive,
+        wishes=wishes,
         loops=loops,
         travel=travel,
         # to rounding at a dead point: the least that any design has
@@ -151,24 +161,22 @@ def judge(group: Candidates, drive: Drive, wishes: Wishes) -> Verdicts:
 
 
 def _lengths(loops: Candidates) -> Array:
-    """The lengths of crank, coupler, and of a four-bar rocker and ground, (D, 2 to 4).
+    """The lengths of crank, rocker, coupler and ground, as far as there are any, (D, 1 to 4).
 
     A coupler that slides in a block is as long as its farthest position needs.
     """
-    if loops.kind is LoopKind.RAPSON:
-        return np.asarray(np.abs(loops.fixed_b[:, None] - loops.moving_a).max(axis=1)[:, None])
-    if not loops.kind.has_crank:
-        rod = np.abs(loops.moving_b[:, 0] - loops.moving_a[:, 0])
-        ground = np.abs(loops.fixed_b - loops.fixed_a)
-        return np.stack([rod, ground] if loops.kind is LoopKind.OLDHAM else [rod], axis=1)
-    if loops.kind is LoopKind.INVERTED:
-        reach = np.abs(loops.fixed_b[:, None] - loops.moving_a).max(axis=1)
-        ground = np.abs(loops.fixed_b - loops.fixed_a)
-        return np.stack([np.abs(loops.moving_a[:, 0] - loops.fixed_a), ground, reach], axis=1)
-    lengths = [loops.moving_a[:, 0] - loops.fixed_a, loops.moving_b[:, 0] - loops.moving_a[:, 0]]
-    if loops.kind is LoopKind.FOUR_BAR:
-        lengths += [loops.moving_b[:, 0] - loops.fixed_b, loops.fixed_b - loops.fixed_a]
-    return np.abs(np.stack(lengths, axis=1))
+    one, other = loops.kind.sides
+    fixed_pins = ((one, loops.moving_a, loops.fixed_a), (other, loops.moving_b, loops.fixed_b))
+    lengths = [
+        np.abs(moving[:, 0] - fixed) for side, moving, fixed in fixed_pins if side is Side.PIN
+    ]
+    if other is Side.BLOCK and one is not Side.BLOCK:
+        lengths.append(np.abs(loops.fixed_b[:, None] - loops.moving_a).max(axis=1))
+    else:
+        lengths.append(np.abs(loops.moving_b[:, 0] - loops.moving_a[:, 0]))
+    if Side.LINE not in (one, other):
+        lengths.append(np.abs(loops.fixed_b - loops.fixed_a))
+    return np.stack(lengths, axis=1)
 
 
 def _pivots_inside(candidates: Candidates, wishes: Wishes) -> BoolArray:
@@ -206,16 +214,18 @@ class Defect:
     """
 
     kind: DefectKind
-    between: tuple[int, int] | None
+    between: tuple[int, int] | None = None
     message: str
 
 
-def defects_of(
-    task: Task, candidates: Candidates, drive: Drive, verdicts: Verdicts, k: int
-) -> tuple[Defect, ...]:
+def defects_of(task: Task, verdicts: Verdicts, k: int) -> tuple[Defect, ...]:
     """All defects of the k-th design, in the order of :class:`DefectKind`."""
-    words = _DefectMessages(task=task, candidates=candidates, drive=drive, verdicts=verdicts, k=k)
-    return tuple(words.defects())
+    words = _DefectMessages(task, verdicts, k)
+    return tuple(
+        Defect(kind=kind, between=words.between(kind), message=words.of(kind))
+        for kind, wrong in verdicts.defects.items()
+        if wrong[k]
+    )
 
 
 def tolerance_message(away: Array, reach: Array, unit: str) -> str:
@@ -224,111 +234,110 @@ def tolerance_message(away: Array, reach: Array, unit: str) -> str:
     return f"position {k + 1} is missed by {away[k]:.4g} {unit}, tolerance {reach[k]:g} {unit}"
 
 
-@dataclass(frozen=True, kw_only=True, eq=False)
+def order_message(inputs: Any) -> str:
+    """In which order positions with these inputs (N,) are passed."""
+    order = np.argsort(inputs, kind="stable") + 1
+    return f"the input passes the positions in the order {', '.join(map(str, order))}"
+
+
+def lengths_message(shortest: float, longest: float) -> str:
+    """Between which lengths those of a design are, if they break their bounds."""
+    return f"lengths from {shortest:.4g} to {longest:.4g} are out of bounds"
+
+
+@dataclass(frozen=True, eq=False)
 class _DefectMessages:
     task: Task
-    candidates: Candidates
-    drive: Drive
     verdicts: Verdicts
     k: int
 
-    def defects(self) -> Iterator[Defect]:
-        writers = {
-            DefectKind.CIRCUIT: self._circuit,
-            DefectKind.BRANCH: self._branch,
-            DefectKind.ORDER: self._order,
-            DefectKind.RANGE: self._range,
-            DefectKind.TRANSMISSION: self._transmission,
-            DefectKind.PIVOTS: self._pivots,
-            DefectKind.LENGTHS: self._lengths,
-            DefectKind.TOLERANCE: self._tolerance,
-            DefectKind.OBSTACLE: self._obstacle,
-            DefectKind.NOT_PROVED: self._not_proved,
-        }
-        for kind, wrong in self.verdicts.defects.items():
-            if wrong[self.k]:
-                message, between = writers[kind]()
-                yield Defect(kind=kind, between=between, message=message)
+    def of(self, kind: DefectKind) -> str:
+        """What is wrong."""
+        message: str = getattr(self, f"_{kind.name.lower()}")()
+        return message
 
-    def _circuit(self) -> tuple[str, tuple[int, int]]:
-        after = int(self.verdicts.travel.circuit[self.k]) + 1
+    def between(self, kind: DefectKind) -> tuple[int, int] | None:
+        """The numbers of the positions between which circuit or branch changes."""
+        changes = kind in (DefectKind.CIRCUIT, DefectKind.BRANCH)
+        return self._change(kind.name.lower()) if changes else None
+
+    def _change(self, word: str) -> tuple[int, int]:
+        after = int(getattr(self.verdicts.travel, word)[self.k]) + 1
+        return after, after + 1
+
+    def _circuit(self) -> str:
+        first, last = self._change("circuit")
         return (
-            f"circuit changes between positions {after} and {after + 1}: the mechanism would have "
-            "to be taken apart",
-            (after, after + 1),
+            f"circuit changes between positions {first} and {last}: the mechanism would have to be "
+            "taken apart"
         )
 
-    def _branch(self) -> tuple[str, tuple[int, int]]:
-        after = int(self.verdicts.travel.branch[self.k]) + 1
-        place = self.verdicts.travel.place[self.k, after - 1 : after + 1]
-        ends = self._dead_points()
-        nearest = min(ends, key=lambda end: float(np.abs(place - end).sum()))
-        return (
-            f"branch changes between positions {after} and {after + 1} at the dead point "
-            f"{self._input_text(nearest)}",
-            (after, after + 1),
-        )
+    def _branch(self) -> str:
+        first, last = self._change("branch")
+        place = self.verdicts.travel.place[self.k, first - 1 : last]
+        nearest = min(self._dead_points(), key=lambda end: float(np.abs(place - end).sum()))
+        at = self._input_text(nearest)
+        return f"branch changes between positions {first} and {last} at the dead point {at}"
 
-    def _order(self) -> tuple[str, None]:
-        order = np.argsort(self.verdicts.travel.place[self.k], kind="stable") + 1
-        return f"the input passes the positions in the order {', '.join(map(str, order))}", None
+    def _order(self) -> str:
+        return order_message(self.verdicts.travel.place[self.k])
 
-    def _range(self) -> tuple[str, None]:
+    def _range(self) -> str:
         unreached, wanted = int(self.verdicts.travel.unreached[self.k]), self.task.wanted
         if unreached < self.verdicts.travel.place.shape[1]:
-            return f"position {unreached + 1} is outside the driven range", None
-        if wanted.turns_fully and not self.drive.turns:
-            return "the driven slider cannot turn fully", None
+            return f"position {unreached + 1} is outside the driven range"
+        if wanted.turns_fully and not self.verdicts.drive.turns:
+            return "the driven slider cannot turn fully"
         if unreached > self.verdicts.travel.place.shape[1]:
-            return "an end of the function's range is outside the driven range", None
+            return "an end of the function's range is outside the driven range"
         ends = " and ".join(map(self._input_text, filter(np.isfinite, self._dead_points())))
-        return f"the driven range passes a dead point: the branch ends at {ends}", None
+        return f"the driven range passes a dead point: the branch ends at {ends}"
 
-    def _transmission(self) -> tuple[str, None]:
-        unit = self.task.angle
+    def _transmission(self) -> str:
+        unit, bound = self.task.angle, self.task.wanted.transmission
         least = rounded_down(unit.from_radians(float(self.verdicts.transmission[self.k])), 4)
-        bound = self.task.wanted.transmission
-        return (
-            f"transmission angle down to {least:.4g}{unit.sign}, wanted {bound:g}{unit.sign}",
-            None,
-        )
+        return f"transmission angle down to {least:.4g}{unit.sign}, wanted {bound:g}{unit.sign}"
 
-    def _pivots(self) -> tuple[str, None]:
-        both = {"A0": self.candidates.fixed_a[self.k], "B0": self.candidates.fixed_b[self.k]}
-        pivots = {name: both[name] for name in self.candidates.kind.pivots}
+    def _pivots(self) -> str:
+        both = {
+            "A0": self.verdicts.candidates.fixed_a[self.k],
+            "B0": self.verdicts.candidates.fixed_b[self.k],
+        }
+        pivots = {name: both[name] for name in self.verdicts.candidates.kind.pivots}
         places = " and ".join(f"{n} at ({z.real:.6g}, {z.imag:.6g})" for n, z in pivots.items())
-        return f"fixed pivots {places} are not all in their region", None
+        return f"fixed pivots {places} are not all in their region"
 
-    def _lengths(self) -> tuple[str, None]:
+    def _lengths(self) -> str:
         verdicts, k = self.verdicts, self.k
-        shortest, longest, arm = verdicts.shortest[k], verdicts.size[k], verdicts.arm[k]
-        if arm > self.task.wanted.longest:
-            return f"an arm of the coupler is {arm:.4g} long, which is out of bounds", None
-        return f"lengths from {shortest:.4g} to {longest:.4g} are out of bounds", None
+        if verdicts.arm[k] > self.task.wanted.longest:
+            return f"an arm of the coupler is {verdicts.arm[k]:.4g} long, which is out of bounds"
+        return lengths_message(verdicts.shortest[k], verdicts.size[k])
 
-    def _tolerance(self) -> tuple[str, None]:
+    def _tolerance(self) -> str:
         positions = self.task.positions
         points = np.array([complex(*position.point) for position in positions])
         reach = np.array([position.tolerance for position in positions])
-        away = np.abs(self.candidates.guided[self.k] - points)
-        return tolerance_message(away, reach, self.task.length), None
+        return tolerance_message(
+            np.abs(self.verdicts.candidates.guided[self.k] - points), reach, self.task.length
+        )
 
-    def _obstacle(self) -> tuple[str, None]:
-        return "a link meets an obstacle, or passes it too closely to exclude that", None
+    def _obstacle(self) -> str:
+        return "a link meets an obstacle, or passes it too closely to exclude that"
 
-    def _not_proved(self) -> tuple[str, None]:
+    def _not_proved(self) -> str:
         loops, k = self.verdicts.loops, self.k
-        if not np.isfinite(self.candidates.error[k]):
-            return "not proved: the solution nearly coincides with another one", None
-        limits = min(abs(loops.upper[k]), abs(loops.lower[k]))
-        if not limits > loops.limit_error[k]:
-            return "not proved: to rounding, the lengths are those of a change point", None
         sides = np.abs(loops.side[k])
-        if not sides.min() > loops.sign_error[k]:
-            return f"not proved: position {int(sides.argmin()) + 1} is at a dead point", None
-        if self.verdicts.transmission[k] == 0.0:
-            return "not proved: to rounding, the driven range touches a dead point", None
-        return "not proved: the order of the positions depends on rounding", None
+        if not np.isfinite(self.verdicts.candidates.error[k]):
+            reason = "the solution nearly coincides with another one"
+        elif not min(abs(loops.upper[k]), abs(loops.lower[k])) > loops.limit_error[k]:
+            reason = "to rounding, the lengths are those of a change point"
+        elif not sides.min() > loops.sign_error[k]:
+            reason = f"position {int(sides.argmin()) + 1} is at a dead point"
+        elif self.verdicts.transmission[k] == 0.0:
+            reason = "to rounding, the driven range touches a dead point"
+        else:
+            reason = "the order of the positions depends on rounding"
+        return f"not proved: {reason}"
 
     def _dead_points(self) -> list[float]:
         """The ends of the branch at the first position, as places."""
@@ -367,6 +376,12 @@ class JudgedDesign(ABC):
     Parameters
     ----------
     task : Task
+    mechanism : str
+        The kind of mechanism, or the mechanism that was improved as the task names it.
+    driven : str
+        The driven link in words, or the leading input.
+    error_unit : str
+        The unit of the error; "" of weighted misses.
     number : int
         Its rank among the sound designs from 1, or its place among the refused ones.
     delivered : bool
@@ -384,6 +399,9 @@ class JudgedDesign(ABC):
     """
 
     task: Task
+    mechanism: str
+    driven: str
+    error_unit: str
     number: int = 0
     delivered: bool = False
     score: float = np.nan
@@ -392,16 +410,6 @@ class JudgedDesign(ABC):
         defects = ", ".join(kind.value for kind in self.kinds) or "sound"
         kind, number = type(self).__name__, self.number
         return f"<{kind} {number}: {self.mechanism} driven at {self.driven}, {defects}>"
-
-    @property
-    @abstractmethod
-    def mechanism(self) -> str:
-        """The kind of mechanism, or the mechanism that was improved as the task names it."""
-
-    @property
-    @abstractmethod
-    def driven(self) -> str:
-        """The driven link in words, or the leading input."""
 
     @property
     def numbers(self) -> dict[str, float]:
@@ -454,11 +462,6 @@ class JudgedDesign(ABC):
     @abstractmethod
     def error(self) -> float:
         """How far positions are missed, the largest distance; or the structural error."""
-
-    @property
-    @abstractmethod
-    def error_unit(self) -> str:
-        """The unit of the error."""
 
     @property
     def kinds(self) -> tuple[DefectKind, ...]:

@@ -8,12 +8,11 @@ timing, points correspond by the shares of arc length at which they lie.
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass, fields
-from typing import Self
+from dataclasses import dataclass
 
 import numpy as np
 
-from linkwork.core.foundation.arrays import Array, ComplexArray, IndexArray
+from linkwork.core.foundation.arrays import Array, Batch, ComplexArray, IndexArray
 from linkwork.core.foundation.units import FULL_TURN, arc_in_order
 from linkwork.synthesis.improvement.curves import INPUT, CouplerCurves, CurveGoal, FourBarCurves
 
@@ -25,7 +24,7 @@ _FARTHEST = 8.0  # sizes of the goal: how far A0 is drawn from it, where it is b
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
-class CurveStarts:
+class CurveStarts(Batch):
     """D starts.
 
     Parameters
@@ -45,17 +44,6 @@ class CurveStarts:
     side: Array
     way: Array
     missed: Array
-
-    def take(self, index: IndexArray) -> Self:
-        """Some of the starts."""
-        return type(self)(**{f.name: getattr(self, f.name)[index] for f in fields(self)})
-
-    @classmethod
-    def joined(cls, parts: list[Self]) -> Self:
-        """Starts of several draws."""
-        return cls(
-            **{f.name: np.concatenate([getattr(p, f.name) for p in parts]) for f in fields(cls)}
-        )
 
 
 def random_loops(kind: type[CouplerCurves], count: int, rng: np.random.Generator) -> Array:

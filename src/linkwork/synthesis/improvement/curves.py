@@ -382,10 +382,6 @@ class CurveGoal:
         length = np.concatenate([[0.0], np.cumsum(np.abs(np.diff(ends)))])
         return np.asarray(length[: len(self.points)] / length[-1])
 
-    def names(self, kind: type[CouplerCurves]) -> tuple[str, ...]:
-        """The dimensions that vary."""
-        return kind.names if self.inputs is None else (*kind.names, INPUT)
-
     def box(self, kind: type[CouplerCurves]) -> Box:
         """The bounds of all dimensions."""
         far = _FREE * (self.size + abs(self.points.mean()))

@@ -38,6 +38,7 @@ from linkwork.synthesis.lane_problems import POWERS, LaneProblem, Multipliers, l
 _STIFF = 10.0  # weight of limits, in spans of their objectives: their shifts converge faster
 _EQUAL = 1e-12  # relative: numbers of motions that differ less are equal
 _MARGIN = 1e-9  # of an objective's scale: by which limits hold in the end
+_PATH = b"path"  # in place of the inputs of rows
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -166,49 +167,6 @@ APPROACH = 4  # parts of the way from the mechanism to a start
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
-class FittedNumbers:
-    """D designs, one for each start that went to the end.
-
-    Parameters
-    ----------
-    x : (D, P)
-        The numbers, file units.
-    t : (D, N)
-        Leading inputs at the points [rad or length].
-    total, largest : (D,)
-        Weighted sums of squares of all misses, and the largest one that is no broken bound.
-    path : (D,)
-        Sums of squares of the distances from the points [length²].
-    names : tuple of str
-        Of the goals that are no bounds.
-    objectives : (D, K)
-        Root mean squares of the misses of each goal that is no bound, without its weight.
-    broken : (D,)
-        The largest weighted residual of a bound.
-    bounds : tuple of Goal
-        Those that a design has to keep.
-    beyond : (D, B, 2)
-        How far it is below and above them.
-    start : (D,)
-        The numbers of their starts.
-    interrupted : bool
-    """
-
-    x: Array
-    t: Array
-    total: Array
-    largest: Array
-    path: Array
-    names: tuple[str, ...]
-    objectives: Array
-    broken: Array
-    bounds: tuple[Goal, ...]
-    beyond: Array
-    start: IndexArray
-    interrupted: bool
-
-
-@dataclass(frozen=True, kw_only=True, eq=False)
 class Fitting:
     """What is fitted.
 
@@ -237,6 +195,52 @@ class Fitting:
     def all_numbers(self, x: Array) -> Array:
         """The numbers (D, P) at the parameters of the fit, (D, G)."""
         return x if self.together is None else self.together.numbers(x)
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class FittedNumbers:
+    """D designs, one for each start that went to the end.
+
+    Parameters
+    ----------
+    fitting : Fitting
+        What was fitted.
+    x : (D, P)
+        The numbers, file units.
+    t : (D, N)
+        Leading inputs at the points [rad or length].
+    total, largest : (D,)
+        Weighted sums of squares of all misses, and the largest one that is no broken bound.
+    path : (D,)
+        Sums of squares of the distances from the points [length²].
+    names : tuple of str
+        Of the goals that are no bounds.
+    objectives : (D, K)
+        Root mean squares of the misses of each goal that is no bound, without its weight.
+    broken : (D,)
+        The largest weighted residual of a bound.
+    bounds : tuple of Goal
+        Those that a design has to keep.
+    beyond : (D, B, 2)
+        How far it is below and above them.
+    start : (D,)
+        The numbers of their starts.
+    interrupted : bool
+    """
+
+    fitting: Fitting
+    x: Array
+    t: Array
+    total: Array
+    largest: Array
+    path: Array
+    names: tuple[str, ...]
+    objectives: Array
+    broken: Array
+    bounds: tuple[Goal, ...]
+    beyond: Array
+    start: IndexArray
+    interrupted: bool
 
 
 class FitProblem(LaneProblem):
@@ -271,16 +275,16 @@ class FitProblem(LaneProblem):
         counted = [np.full(misses.count, not misses.is_bound) for misses in self.goals]
         # goals of the same rows share their positions
         tables = {misses.at.tobytes(): misses.at for misses in self.goals}
-        paths = [] if path is None else [path.inputs]
+        if path is not None:
+            tables = {_PATH: path.inputs, **tables}
         super().__init__(
             fitting.box,
             row_inputs(path, model, table),
             lanes,
-            sum(map(len, [*paths, *tables.values()])),
+            sum(map(len, tables.values())),
             np.concatenate([np.zeros(0, bool), *counted]),
         )
-        self.points = None if path is None else self._solved_lanes(path.inputs)
-        self.rows = {key: self._solved_lanes(at) for key, at in tables.items()}
+        self.solved = {key: self._solved_lanes(at) for key, at in tables.items()}
         self._there = there
         #: How much the numbers of a fit are above the exact ones, for each goal (K, lanes).
         self.errors = np.zeros((len(self.goals), lanes))
@@ -334,7 +338,7 @@ class FitProblem(LaneProblem):
         """Start lanes at the present state of other lanes."""
         for name in ("x", "t", "total"):
             getattr(fit, name)[to] = getattr(fit, name)[of]
-        for solved in self._solvers:
+        for solved in self.solved.values():
             solved.copy_lanes(of, to)
         self.errors[:, to] = self.errors[:, of]
         self._reached[to] = True
@@ -348,10 +352,6 @@ class FitProblem(LaneProblem):
             between = between_rows(self.model, self.motion)(at[far]).columns[0][:, : q.shape[1]]
             q[far] = np.where(np.isfinite(between), between, q[far])
         return SolvedLanes(self.writer, self.numbers, q, at, self.lanes)
-
-    @property
-    def _solvers(self) -> list[SolvedLanes]:
-        return [*([self.points] if self.points is not None else []), *self.rows.values()]
 
     def begun(self, starts: Array) -> LaneFit:
         """The starts, which are reached from the mechanism when their lanes are first worked on."""
@@ -393,7 +393,7 @@ class FitProblem(LaneProblem):
         total = np.zeros(0)
         for part in range(1, APPROACH + 1):
             count()
-            for solved in self._solvers:
+            for solved in self.solved.values():
                 solved.total[lanes] = np.inf
             total = self.evaluate(begin + (end - begin) * (part / APPROACH), t, lanes).total
         return total
@@ -402,7 +402,7 @@ class FitProblem(LaneProblem):
         """Lanes that are reached, if they were not before."""
         if not self._reached[lanes].all():
             fit = replace(fit, total=self._reach(fit, lanes, count))
-        for solved in self._solvers:
+        for solved in self.solved.values():
             # sums of an earlier round are no measure of this one
             solved.total[lanes] = np.inf
         return fit
@@ -415,20 +415,15 @@ class FitProblem(LaneProblem):
         count, parameters = x.shape
         rows, by_x = np.zeros((count, 0, 2)), np.zeros((count, 0, 2, parameters))
         by_t: Array | None = None
-        kept = []
         designs = self.writer.written(x)
-        if self.path is not None and self.points is not None:
-            at = np.broadcast_to(self.path.inputs, (count, len(self.path.places)))
-            at = at if self.path.timed else t
-            positions_of_lanes = self.points.at(designs, at, lanes)
-            rows, by_x, slope = self.path.misses(positions_of_lanes)
-            by_t = None if self.path.timed else slope
-            kept.append((self.points, positions_of_lanes, at))
-        positions = {}
-        for key, solved in self.rows.items():
-            at = np.broadcast_to(solved.rows_at, (count, len(solved.rows_at)))
-            positions[key] = solved.at(designs, at, lanes)
-            kept.append((solved, positions[key], at))
+        free = self.path is not None and not self.path.timed
+        positions = {
+            key: solved.at(designs, lanes, t if free and key == _PATH else None)
+            for key, solved in self.solved.items()
+        }
+        if self.path is not None:
+            rows, by_x, slope = self.path.misses(positions[_PATH])
+            by_t = slope if free else None
         shared, shared_by_x = [np.zeros((count, 0))], [np.zeros((count, 0, parameters))]
         for k, misses in enumerate(self.goals):
             arguments = positions[misses.at.tobytes()], self.errors[k, lanes], self.bounds[k], lanes
@@ -445,8 +440,8 @@ class FitProblem(LaneProblem):
         if self.trade is not None:
             result = self.trade.applied(result, lanes)
         result = self.raised(result, lanes, power)
-        for solver, positions_of_lanes, at in kept:
-            solver.keep(positions_of_lanes, x, at, lanes, result.total)
+        for key, solved in self.solved.items():
+            solved.keep(positions[key], lanes, result.total)
         return result
 
     def correct(self, fit: LaneFit, lanes: IndexArray) -> IndexArray:
@@ -463,8 +458,7 @@ class FitProblem(LaneProblem):
             designs = self.writer.written(x)
             values = []
             for goal in goals.values():
-                at = np.broadcast_to(goal.at, (len(part), len(goal.at)))
-                solved = self.rows[goal.at.tobytes()].at(designs, at, part)
+                solved = self.solved[goal.at.tobytes()].at(designs, part)
                 values.append(goal.values(solved)[0][:, 0])
             for d, lane in enumerate(part.tolist()):
                 motion = self._motion(x[d])
@@ -493,7 +487,7 @@ class FitProblem(LaneProblem):
         """The misses of lanes without powers, weights and shifts."""
         kept = self.power, self.trade, self.bounds
         self.power, self.trade, self.bounds = 1, None, self._new_bounds()
-        for solved in self._solvers:
+        for solved in self.solved.values():
             solved.total[lanes] = np.inf
         parts = self.work.parts(lanes)
         measured: dict[int, Residuals] = {}
@@ -518,6 +512,7 @@ class FitProblem(LaneProblem):
         if timed and self.path is not None:
             t = np.array(np.broadcast_to(self.path.inputs, (len(fit), len(self.path.places))))
         return FittedNumbers(
+            fitting=self.fitting,
             x=self.fitting.all_numbers(fit.x),
             t=t,
             total=np.where(np.isfinite(fit.total), there.total, np.inf),
@@ -640,7 +635,7 @@ def path_misses(
     away = inputs_away(path.inputs, motion, model)
     writer = DesignWriter(model, numbers)
     solved = SolvedLanes(writer, x, motion.q[away.argmin(axis=1)], path.inputs, 1)
-    positions = solved.at(writer.written(x[None]), path.inputs[None], np.zeros(1, dtype=int))
+    positions = solved.at(writer.written(x[None]), np.zeros(1, dtype=int))
     place = positions.rows.place(path.point).v
     value = positions.values([place.real, place.imag])[0][0]
     return np.asarray(np.abs(value[:, 0] + 1j * value[:, 1] - path.places))

@@ -14,8 +14,7 @@ from itertools import combinations, product
 import numpy as np
 
 from linkwork.core.foundation.arrays import Array, IndexArray
-from linkwork.core.mechanism.varied_numbers import VariedNumber
-from linkwork.core.motion.model import Model, model_of
+from linkwork.core.motion.model import model_of
 from linkwork.synthesis.improvement.fit_problem import (
     APPROACH,
     FitProblem,
@@ -24,14 +23,12 @@ from linkwork.synthesis.improvement.fit_problem import (
     TradeOff,
     check_moved,
 )
-from linkwork.synthesis.improvement.goals import PathGoal
 from linkwork.synthesis.improvement.proved_design import (
     ImprovedDesign,
     fitted_design,
     interrupted_design,
 )
-from linkwork.synthesis.improvement.settings import Goal
-from linkwork.synthesis.lane_least_squares import Box, starts_of
+from linkwork.synthesis.lane_least_squares import starts_of
 
 _ALIKE = 1e-6  # of the span of an objective: repeated fits agree to this
 
@@ -380,15 +377,8 @@ def _divided(gaps: Array, count: int, missing: int) -> list[int]:
 # The proved designs of a front: those that no other sound design surpasses in every goal.
 
 
-Fits = Sequence[tuple[PathGoal | None, FittedNumbers]]
-
-
 def front_designs(
-    model: Model,
-    numbers: Sequence[VariedNumber],
-    box: Box,
-    goals: Sequence[Goal],
-    fits: Fits,
+    fits: Sequence[FittedNumbers],
     count: int,
     is_sound: Callable[[ImprovedDesign], bool],
     tell: Callable[[float], None],
@@ -401,9 +391,7 @@ def front_designs(
 
     Parameters
     ----------
-    goals : sequence of Goal
-        Those of the fits.
-    fits : sequence of (PathGoal or None, FittedNumbers)
+    fits : sequence of FittedNumbers
     count : int
         The largest number of designs of the front.
     is_sound : callable
@@ -416,12 +404,10 @@ def front_designs(
     KeyboardInterrupt
         If no design was proved before it.
     """
-    lanes = [
-        (path, fit, k) for path, fit in fits for k in range(len(fit.x)) if np.isfinite(fit.total[k])
-    ]
-    values = np.array([fit.objectives[k] for _, fit, k in lanes])
-    values = values.reshape(len(lanes), len(fits[0][1].names))
-    broken = np.array([fit.broken[k] for _, fit, k in lanes])
+    lanes = [(fit, k) for fit in fits for k in np.flatnonzero(np.isfinite(fit.total)).tolist()]
+    values = np.array([fit.objectives[k] for fit, k in lanes])
+    values = values.reshape(len(lanes), len(fits[0].names))
+    broken = np.array([fit.broken[k] for fit, k in lanes])
     kept = broken <= BROKEN
     if len(lanes) and not kept.any():
         # the design that comes nearest to the bounds is shown, and refused
@@ -442,9 +428,7 @@ def front_designs(
             for k in new:
                 share = max(share, len(proved) / every)
                 tell(share)
-                path, fit, lane = lanes[k]
-                design = fitted_design(model, numbers, path, fit, lane)
-                design = _measured(design, numbers, box, path, goals, fit.t[lane])
+                design = _measured(fitted_design(*lanes[k]), *lanes[k])
                 if is_sound(design):
                     # equal designs would take its place by rounding
                     values[alike(values, k, spans)] = np.inf
@@ -462,29 +446,14 @@ def front_designs(
     return tuple(map(interrupted_design, designs)) if stopped else designs
 
 
-def _measured(
-    design: ImprovedDesign,
-    numbers: Sequence[VariedNumber],
-    box: Box,
-    path: PathGoal | None,
-    goals: Sequence[Goal],
-    t: Array,
-) -> ImprovedDesign:
-    """The design with its goals on its own proved motion."""
+def _measured(design: ImprovedDesign, fit: FittedNumbers, k: int) -> ImprovedDesign:
+    """The design of a lane with its goals on its own proved motion."""
     if design.motion is None or not design.motion.found.any():
         return design
-    at = None if path is None else replace(path, inputs=t, timed=True)
-    problem = FitProblem(
-        Fitting(
-            model=model_of(design.description),
-            motion=design.motion,
-            numbers=numbers,
-            box=box,
-            path=at,
-            goals=goals,
-        ),
-        1,
-    )
+    path = fit.fitting.path
+    at = None if path is None else replace(path, inputs=fit.t[k], timed=True)
+    model = model_of(design.description)
+    problem = FitProblem(replace(fit.fitting, model=model, motion=design.motion, path=at), 1)
     x = np.array(list(design.numbers.values()))[None]
     misses = problem.measured(starts_of(x, np.zeros((1, 0))), np.zeros(1, dtype=int))
     values = problem.objectives.values(misses)[0]

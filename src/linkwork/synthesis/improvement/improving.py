@@ -28,7 +28,6 @@ from linkwork.synthesis.improvement.fit_problem import (
     misses_before,
 )
 from linkwork.synthesis.improvement.fronts import fit_front, front_designs
-from linkwork.synthesis.improvement.goals import PathGoal
 from linkwork.synthesis.improvement.kept_relations import (
     STARTS,
     Together,
@@ -41,8 +40,10 @@ from linkwork.synthesis.improvement.proved_design import (
     fitted_design,
     interrupted_design,
 )
-from linkwork.synthesis.improvement.settings import Aid, Goal, Improvement, Points, least_in_rows
+from linkwork.synthesis.improvement.settings import Aid, Goal, Improvement, Points
+from linkwork.synthesis.improvement.whole_motion import least_in_rows
 from linkwork.synthesis.lane_least_squares import Box
+from linkwork.synthesis.lane_problems import Progress, part_of
 
 __all__ = [
     "FACTOR",
@@ -64,14 +65,12 @@ _OFF = math.radians(0.25)  # dead points: starts that lead to one are led again,
 _LEAST_EFFECT = 0.3
 _EQUAL_NUMBERS = 1e-6  # relative difference of numbers of equal designs
 
-_Fit = tuple[PathGoal | None, FittedNumbers]
-
 
 def improved_designs(
     model: Model,
     goals: Sequence[Goal | Points],
     settings: Improvement,
-    progress: Callable[[float], None] | None = None,
+    progress: Progress | None = None,
     *,
     is_sound: Callable[[ImprovedDesign], bool] = lambda design: design.sound,
     enough: int | None = None,
@@ -96,23 +95,22 @@ def improved_designs(
         raise InputError(f'"{model.description.name}" has no number that can vary alone')
     box = box_of(model, numbers, settings)
     starts = box.inside(spread_starts(model, numbers, settings))
-    search = _Search(model, numbers, box, points, settings, is_sound, enough, progress)
+    search = _Search(model, numbers, box, points, settings, is_sound, enough)
     held = {goal.of for goal in others}
     kept_off = [goal for goal in transmission_goals(model, _OFF) if goal.of not in held]
     one = bool(settings.front or (points and not kept_off))
-    search.share = 1.0 if one else _FIRST
+    search.progress = part_of(progress, 0.0, 1.0 if one else _FIRST)
     try:
         fits = search.fits(others, starts)
     except NotElementwise:
         raise InputError(_unfollowed(model, numbers)) from None
     if settings.front:
-        arguments = (model, numbers, box, others, fits, settings.front, is_sound)
-        front = front_designs(*arguments, search.tell_proofs)
+        front = front_designs(fits, settings.front, is_sound, search.tell_proofs)
         return tuple(map(interrupted_design, front)) if search.interrupted else front
     designs = search.proved(fits, range(len(starts)), [])
     locked = [k for k, done in designs if _locks(done)]
     if locked and kept_off and not search.interrupted:
-        search.begin, search.share = _FIRST, 1.0 - _FIRST if points else _AGAIN
+        search.progress = part_of(progress, _FIRST, 1.0 - _FIRST if points else _AGAIN)
         known = [done for done in designs if done[1].sound or done[0] not in locked]
         led = known
         try:
@@ -127,7 +125,7 @@ def improved_designs(
     hampered = search.lost or any(_locks(done) or search.moved(done).unmoved for _, done in designs)
     reached = points or search.interrupted or any(_is_reached(done) for _, done in designs)
     if hampered and not reached:
-        designs = search.related(others, designs, len(starts))
+        designs = search.related(others, designs, len(starts), progress)
     if search.interrupted and not designs:
         raise KeyboardInterrupt
     explained = interrupted_design if search.interrupted else search.moved
@@ -156,10 +154,7 @@ def _rank(settings: Improvement, design: ImprovedDesign) -> tuple[bool, float]:
 
 @dataclass(eq=False)
 class _Search:
-    """Fits from starts, and their proofs, which the user may stop.
-
-    ``begin``, ``share``: its part of all progress.
-    """
+    """Fits from starts, and their proofs, which the user may stop."""
 
     model: Model
     numbers: Sequence[VariedNumber]
@@ -168,41 +163,32 @@ class _Search:
     settings: Improvement
     is_sound: Callable[[ImprovedDesign], bool]
     enough: int | None
-    progress: Callable[[float], None] | None
-    together: Together | None = None
-    begin: float = 0.0
-    share: float = 1.0
+    progress: Progress | None = None
     interrupted: bool = False
     begun: int = 0
     lost: int = 0
     before: float = math.inf
 
-    def tell(self, fraction: float) -> None:
-        """A fraction of this search is done."""
-        if self.progress is not None:
-            self.progress(self.begin + self.share * fraction)
-
-    def fits(self, goals: Sequence[Goal], starts: Array) -> list[_Fit]:
+    def fits(
+        self, goals: Sequence[Goal], starts: Array, together: Together | None = None
+    ) -> list[FittedNumbers]:
         """Fits from starts (D, P), one for each way to time the points."""
         model, settings = self.model, self.settings
         motion = sweep(model, certify=False)
         if not motion.found.any():
             raise InputError(f'"{model.description.name}" has no position: improve one that moves')
         paths = paths_of(model, motion, self.points) if self.points else (None,)
-        fits: list[_Fit] = []
+        fits: list[FittedNumbers] = []
         for part, path in enumerate(paths):
-
-            def told(fraction: float, done: int = part) -> None:
-                self.tell(_SEARCH * (done + fraction) / len(paths))
-
+            told = part_of(self.progress, _SEARCH * part / len(paths), _SEARCH / len(paths))
             fitting = Fitting(
                 model=model,
                 motion=motion,
                 numbers=self.numbers,
-                box=self.box,
+                box=self.box if together is None else together.box(self.box),
                 path=path,
                 goals=goals,
-                together=self.together,
+                together=together,
             )
             if path is None and not settings.front and not _is_locked(motion):
                 self.before = misses_before(fitting, minimax=settings.fit == "minimax")
@@ -210,7 +196,7 @@ class _Search:
                 fit = fit_front(fitting, starts, settings.front, progress=told)
             else:
                 fit = fit_numbers(fitting, starts, minimax=settings.fit == "minimax", progress=told)
-            fits.append((path, fit))
+            fits.append(fit)
             self.begun += len(starts)
             self.lost += len(starts) - int(np.isfinite(fit.total).sum())
             self.interrupted |= fit.interrupted
@@ -219,35 +205,36 @@ class _Search:
         return fits
 
     def related(
-        self, goals: Sequence[Goal], known: list[tuple[int, ImprovedDesign]], count: int
+        self,
+        goals: Sequence[Goal],
+        known: list[tuple[int, ImprovedDesign]],
+        count: int,
+        progress: Progress | None,
     ) -> list[tuple[int, ImprovedDesign]]:
         """Known designs, and those whose numbers keep the relations of the mechanism.
 
         ``count``: so many starts for each kind of relation.
         """
-        saved = self.numbers, self.box, self.together
         motion = sweep(self.model, certify=False)
         rng = np.random.default_rng(self.settings.seed)
         for k, together in enumerate(kept_relations(self.model, motion, self.numbers)):
-            self.begin, self.share = _FIRST + _AGAIN + k * _RELATED, _RELATED
-            self.together, self.box = together, together.box(saved[1])
+            self.progress = part_of(progress, _FIRST + _AGAIN + k * _RELATED, _RELATED)
             spread = self.settings.spread * rng.uniform(-1.0, 1.0, (count, len(together.sizes)))
             spread[0] = 0.0
-            starts = self.box.inside(together.sizes * (1.0 + spread))
+            starts = together.box(self.box).inside(together.sizes * (1.0 + spread))
             try:
-                known = self.proved(self.fits(goals, starts), [-1] * count, known)
+                known = self.proved(self.fits(goals, starts, together), [-1] * count, known)
             except MechanismError:  # a goal changes with none of these sizes
                 continue
             except KeyboardInterrupt:
                 self.interrupted = True
             if self.interrupted or any(_is_reached(design) for _, design in known):
                 break
-        _, self.box, self.together = saved
         return known
 
     def proved(
         self,
-        fits: Sequence[_Fit],
+        fits: Sequence[FittedNumbers],
         starts: Sequence[int],
         known: Sequence[tuple[int, ImprovedDesign]],
     ) -> list[tuple[int, ImprovedDesign]]:
@@ -258,7 +245,7 @@ class _Search:
         minimax = self.settings.fit == "minimax"
         best = sorted(
             (float((fit.largest if minimax else fit.total)[k]), part, int(k))
-            for part, (_, fit) in enumerate(fits)
+            for part, fit in enumerate(fits)
             for k in np.flatnonzero(np.isfinite(fit.total))
         )
         try:
@@ -266,9 +253,9 @@ class _Search:
                 self.tell_proofs(done / len(best))
                 if self.interrupted and self.enough is not None and sound >= self.enough:
                     break
-                path, fit = fits[part]
+                fit = fits[part]
                 if not _is_known(fit.x[k], [design_known for _, design_known in designs]):
-                    design = fitted_design(self.model, self.numbers, path, fit, k)
+                    design = fitted_design(fit, k)
                     designs.append((starts[int(fit.start[k])], design))
                     sound += self.is_sound(design)
         except KeyboardInterrupt:
@@ -293,9 +280,9 @@ class _Search:
 
     def tell_proofs(self, fraction: float) -> None:
         """A fraction of the proofs is done; an interruption of the telling does not end them."""
-        if not self.interrupted:
+        if not self.interrupted and self.progress is not None:
             try:
-                self.tell(_SEARCH + (1.0 - _SEARCH) * fraction)
+                self.progress(_SEARCH + (1.0 - _SEARCH) * fraction)
             except KeyboardInterrupt:
                 self.interrupted = True
 

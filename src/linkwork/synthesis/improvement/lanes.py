@@ -263,6 +263,8 @@ class LanePositions:
     ----------
     rows : LaneRows
         D N rows, design by design.
+    t : (D, N)
+        The leading inputs.
     slopes : (D N, N, P + 1)
         Derivatives of all variables by the numbers and by the leading input.
     shape : (int, int)
@@ -273,6 +275,7 @@ class LanePositions:
     """
 
     rows: LaneRows
+    t: Array
     slopes: Array
     solved: BoolArray
     shape: tuple[int, int]
@@ -353,7 +356,7 @@ class SolvedLanes:
         self.by_t = np.zeros((lanes, rows, n))
         self.total = np.full(lanes, np.inf)
         self._sign: Array | None = None
-        first = self.at(writer.written(x[None, :]), t[None, :], np.arange(1))
+        first = self.at(writer.written(x[None, :]), np.arange(1))
         self._sign = first.sign
         self.by_x[:] = first.slopes[:, :n, :-1].reshape(1, rows, n, len(x))
         self.by_t[:] = first.slopes[:, :n, -1].reshape(1, rows, n)
@@ -374,9 +377,12 @@ class SolvedLanes:
         first = self.model.rows[0]
         return np.asarray(first + (t - first[self.lead])[..., None] * self.rate)
 
-    def at(self, designs: WrittenDesigns, t: Array, lanes: IndexArray) -> LanePositions:
-        """The positions of D designs at inputs (D, N) of these lanes."""
-        x, (count, rows) = designs.x, t.shape
+    def at(
+        self, designs: WrittenDesigns, lanes: IndexArray, t: Array | None = None
+    ) -> LanePositions:
+        """The positions of D designs of these lanes at inputs (D, N), by default those of rows."""
+        x, count, rows = designs.x, len(designs.x), len(self.rows_at)
+        t = np.broadcast_to(self.rows_at, (count, rows)) if t is None else t
         change = np.einsum("dnkp,dnp->dnk", self.by_x[lanes], x[:, None] - self.x[lanes])
         change += self.by_t[lanes] * (t - self.t[lanes])[:, :, None]
         v = np.concatenate([self.q[lanes] + change, self.inputs(t)], axis=2)
@@ -412,6 +418,7 @@ class SolvedLanes:
         slopes[:, n:, -1] = self.rate
         return LanePositions(
             rows=LaneRows(designs, solved, slopes),
+            t=t,
             slopes=slopes,
             solved=fine,
             shape=(count, rows),
@@ -419,16 +426,15 @@ class SolvedLanes:
             sign=sign,
         )
 
-    def keep(
-        self, positions: LanePositions, x: Array, t: Array, lanes: IndexArray, total: Array
-    ) -> None:
+    def keep(self, positions: LanePositions, lanes: IndexArray, total: Array) -> None:
         """Remember designs that are better than the last ones of their lanes."""
+        x = positions.rows.designs.x
         better = total < self.total[lanes]
         self.total[lanes[better]] = total[better]
         which = np.nonzero(positions.solved.reshape(positions.shape) & better[:, None])
         to, n = (lanes[which[0]], which[1]), self.q.shape[2]
         shape = *positions.shape, n
-        self.x[to], self.t[to] = x[which[0]], t[which]
+        self.x[to], self.t[to] = x[which[0]], positions.t[which]
         self.q[to] = positions.rows.solution[:, :n].reshape(shape)[which]
         self.by_x[to] = positions.slopes[:, :n, :-1].reshape(*shape, x.shape[1])[which]
         self.by_t[to] = positions.slopes[:, :n, -1].reshape(shape)[which]

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field, replace
 
 import numpy as np
@@ -12,17 +12,16 @@ from linkwork.core.foundation.containers import FrozenDict
 from linkwork.core.foundation.errors import LinkworkError, internal
 from linkwork.core.foundation.values import told_beside
 from linkwork.core.mechanism.description import Description
-from linkwork.core.mechanism.varied_numbers import VariedNumber, with_numbers
-from linkwork.core.motion.model import Model, model_of
+from linkwork.core.mechanism.varied_numbers import with_numbers
+from linkwork.core.motion.model import model_of
 from linkwork.core.motion.sweeping import sweep
 from linkwork.core.results.motion import Motion, branch_end
-from linkwork.synthesis.improvement.fit_problem import FittedNumbers, path_misses
+from linkwork.synthesis.improvement.fit_problem import FittedNumbers, Fitting, path_misses
 from linkwork.synthesis.improvement.goals import PathGoal
-from linkwork.synthesis.improvement.settings import MotionBounds, nearly_dead
-from linkwork.synthesis.improvement.whole_motion import WholeMotion
+from linkwork.synthesis.improvement.whole_motion import WholeMotion, nearly_dead
 
 
-@internal("description", "motion", "whole_motion")
+@internal("description", "motion", "whole_motion", "unproved")
 @dataclass(frozen=True, kw_only=True, eq=False)
 class ImprovedDesign:
     """A mechanism with improved numbers.
@@ -59,7 +58,7 @@ class ImprovedDesign:
         Why it is the mechanism as it was, whose goals are missed; else empty.
     motion : Motion, optional
         Its table with the proofs; ``None`` if it has no position.
-    whole_motion : MotionBounds, optional
+    whole_motion : WholeMotion, optional
         The motion between the rows too; ``None`` if that is not proved.
 
     Examples
@@ -85,7 +84,20 @@ class ImprovedDesign:
     near_dead: str = ""
     unmoved: str = ""
     motion: Motion | None = None
-    whole_motion: MotionBounds | None = None
+    whole_motion: WholeMotion | None = None
+
+    @classmethod
+    def unproved(cls, description: Description, message: str) -> ImprovedDesign:
+        """A mechanism as it is, without a sweep."""
+        return cls(
+            description=description,
+            numbers={},
+            total=np.nan,
+            largest=np.nan,
+            rms=0.0,
+            sound=False,
+            message=message,
+        )
 
     def __repr__(self) -> str:
         return f"<ImprovedDesign: total {self.total:.4g}, {self.message}>"
@@ -98,20 +110,13 @@ class ImprovedDesign:
 _INTERRUPTED = "interrupted: the best so far; "
 
 
-def fitted_design(
-    model: Model,
-    numbers: Sequence[VariedNumber],
-    path: PathGoal | None,
-    fit: FittedNumbers,
-    k: int,
-) -> ImprovedDesign:
+def fitted_design(fit: FittedNumbers, k: int) -> ImprovedDesign:
     """The design of one lane of a fit."""
-    message = _INTERRUPTED if fit.interrupted else ""
-    new = dict(zip(numbers, map(float, fit.x[k]), strict=True))
+    message, path = _INTERRUPTED if fit.interrupted else "", fit.fitting.path
+    new = dict(zip(fit.fitting.numbers, map(float, fit.x[k]), strict=True))
+    description = with_numbers(fit.fitting.model.description, new)
     design = replace(
-        proved_design(
-            with_numbers(model.description, new), {q.name: x for q, x in new.items()}, message
-        ),
+        proved_design(description, {q.name: x for q, x in new.items()}, message),
         total=float(fit.total[k]),
         largest=float(fit.largest[k]),
         goals=dict(zip(fit.names, map(float, fit.objectives[k]), strict=True)),
@@ -123,7 +128,7 @@ def fitted_design(
     if path is None:
         return design
     rms = float(np.sqrt(fit.path[k] / len(path.places)))
-    return _on_path(replace(design, rms=rms), model, numbers, path, fit.t[k])
+    return _on_path(replace(design, rms=rms), fit.fitting, path, fit.t[k])
 
 
 def _broken(fit: FittedNumbers, k: int) -> Iterator[str]:
@@ -168,35 +173,26 @@ def proved_design(
         text += f"; {near_dead}" if near_dead else ""
     except LinkworkError as error:
         sound, text = False, f"{text}{error}"
-    return ImprovedDesign(
-        description=description,
+    return replace(
+        ImprovedDesign.unproved(description, text),
         numbers=numbers,
-        total=np.nan,
-        largest=np.nan,
-        rms=0.0,
         sound=sound,
-        message=text,
         near_dead=near_dead,
         motion=motion,
         whole_motion=whole,
     )
 
 
-def _on_path(
-    design: ImprovedDesign,
-    model: Model,
-    numbers: Sequence[VariedNumber],
-    path: PathGoal,
-    t: Array,
-) -> ImprovedDesign:
+def _on_path(design: ImprovedDesign, fitting: Fitting, path: PathGoal, t: Array) -> ImprovedDesign:
     """The design with its distances from the points, measured on its proved branch."""
     order = slice(None, None, -1 if path.falling else 1)
-    places = tuple(map(float, t[order] / model.input_scale[0]))
+    places = tuple(map(float, t[order] / fitting.model.input_scale[0]))
     misses = np.full(len(places), np.nan)
     if design.motion is not None and design.motion.found.any():
         x = np.array(list(design.numbers.values()))
         at = replace(path, inputs=t, timed=True)
-        misses = path_misses(model_of(design.description), design.motion, numbers, at, x)[order]
+        model = model_of(design.description)
+        misses = path_misses(model, design.motion, fitting.numbers, at, x)[order]
     text, sound = design.message, design.sound
     if not np.isfinite(misses).all():
         text, sound = f"{text}; not all points lie on the branch of its table", False

@@ -30,13 +30,35 @@ from linkwork.core.motion.extremes import (
 )
 from linkwork.core.motion.model import Model
 from linkwork.core.results.motion import Motion, branch_end
-from linkwork.synthesis.improvement.settings import Contact, LeastAngle
+from linkwork.core.results.quantities.rows import TRANSMISSION_ANGLE
 from linkwork.synthesis.lane_least_squares import Box
 
 _MOST_BOXES = 20_000  # that a proof may take, besides those of the rows
 _MOST_OF_ANGLES = 60_000  # the same, for dyads that stay near a dead point
 _CLOSE = 1e-6  # rad: between the bounds of the least angle, unless the required one is between them
 _WHOLE_MOTION_ROUNDING = 1e-12  # rad: of angles in proved positions
+#: Below this least transmission angle a design is at a dead point, for all that play allows.
+_DEAD = math.radians(0.1)
+_LOOKED_AT = math.radians(5.0)  # least angles of rows, between which a smaller one may be
+
+
+@dataclass(frozen=True, kw_only=True)
+class LeastAngle:
+    """The least angle is between ``low`` and ``high`` [rad], the angle at the input ``at``."""
+
+    low: float
+    high: float
+    at: float
+
+
+@dataclass(frozen=True, kw_only=True)
+class Contact:
+    """``met``: a side that meets a circle, and the input there, if any; ``open``: the interval
+    of the input in which contact is not excluded.
+    """
+
+    met: tuple[int, float] | None
+    open: tuple[float, float] | None
 
 
 class WholeMotion:
@@ -84,7 +106,9 @@ class WholeMotion:
         return tuple(dyads.values())
 
     def least_transmission(self, least_wanted: float) -> LeastAngle:
-        """See :meth:`MotionBounds.least_transmission`."""
+        """The least transmission angle of all dyads, of which there is at least one, folded to 0 to
+        a quarter of a turn; ``least_wanted``: decide whether it is smaller than this [rad].
+        """
         if least_wanted not in self._least:
             self._least[least_wanted] = self._least_transmission(least_wanted)
         return self._least[least_wanted]
@@ -116,22 +140,26 @@ class WholeMotion:
         middles, lows = [], []
         with np.errstate(all="ignore"):  # bounds of boxes without a proof are infinite
             for dyad in self.dyads:
-                one = self._direction(motions, boxes.span, dyad.pin, dyad.arms[0])
+                one, rate, error = self._direction(motions, boxes.span, dyad.pin, dyad.arms[0])
                 if dyad.guide is None:
-                    other, turned = (dyad.pin, dyad.arms[1]), 0.0
+                    ends, turned = (dyad.pin, dyad.arms[1]), 0.0
                 else:
                     # the block passes its force on across its line
-                    other, turned = dyad.guide.line, 0.5 * np.pi
-                two = self._direction(motions, boxes.span, *other)
-                angle = one.angle - two.angle - turned
-                reach = np.abs(one.rate - two.rate) * boxes.span + one.error + two.error
+                    ends, turned = dyad.guide.line, 0.5 * np.pi
+                two, rate_of_two, error_of_two = self._direction(motions, boxes.span, *ends)
+                angle = one - two - turned
+                reach = np.abs(rate - rate_of_two) * boxes.span + error + error_of_two
                 reach = np.where(boxes.holds, reach * PROOF_SLACK, np.inf)
                 middles.append(_folded(angle))
                 lows.append(_least_folded(angle, reach))
         return np.min(middles, axis=0), np.min(lows, axis=0)
 
-    def _direction(self, motions: PointMotions, span: Array, start: str, end: str) -> _Direction:
-        """The direction of the line between two points."""
+    def _direction(
+        self, motions: PointMotions, span: Array, start: str, end: str
+    ) -> tuple[Array, Array, Array]:
+        """The angle and the rate of the line between two points in the middle of boxes, and how far
+        it is from turning evenly [rad], (B,) each.
+        """
         a, b = self._number[start], self._number[end]
         line = motions.place[:, b] - motions.place[:, a]
         rate = (motions.rate[:, b] - motions.rate[:, a]) / line
@@ -141,10 +169,17 @@ class WholeMotion:
         # eq. (192)
         error = 0.5 * turned**2 / rest + np.arcsin(np.minimum(lost / rest, 1.0))
         error = np.where((rest > 0.0) & (lost < rest), error, np.inf)
-        return _Direction(angle=np.angle(line), rate=rate.imag, error=error)
+        return np.angle(line), rate.imag, error
 
     def contact(self, sides: Sequence[tuple[str, str]], circles: Array) -> Contact:
-        """See :meth:`MotionBounds.contact`."""
+        """Whether sides between two points of a link come into circles.
+
+        Parameters
+        ----------
+        sides : sequence of (str, str)
+        circles : (M, 3)
+            x, y, radius [length].
+        """
         key = circles.tobytes()
         if key not in self._contacts:
             self._contacts[key] = self._contact(sides, circles)
@@ -175,17 +210,6 @@ class WholeMotion:
             return Contact(met=None, open=None)
         low, high = (end / self._unit for end in left.ends)
         return Contact(met=None, open=(float(low.min()), float(high.max())))
-
-
-@dataclass(frozen=True, kw_only=True, eq=False)
-class _Direction:
-    """``angle`` and ``rate`` of a line in the middle of boxes, how far it is from turning evenly:
-    ``error`` [rad], (B,) each.
-    """
-
-    angle: Array
-    rate: Array
-    error: Array
 
 
 def _folded(angle: Array) -> Array:
@@ -239,6 +263,38 @@ def _dot(z: ComplexArray, w: ComplexArray) -> Array:
 
 def _cross(z: ComplexArray, w: ComplexArray) -> Array:
     return np.asarray(z.real * w.imag - z.imag * w.real)
+
+
+def least_in_rows(motion: Motion) -> float:
+    """The least transmission angle of all dyads in the rows that have a position, NaN without one
+    [file's angle unit].
+    """
+    half = motion.units.angle.turn / 2.0
+    names = [n for n, a in motion.quantities.derived.items() if a.row is TRANSMISSION_ANGLE]
+    # 40° and 140° transmit equally well
+    rows = [np.minimum(angle, half - angle) for angle in (motion[n][motion.found] for n in names)]
+    return min((float(angle.min()) for angle in rows if len(angle)), default=float("nan"))
+
+
+def nearly_dead(motion: Motion, whole: WholeMotion | None) -> str:
+    """That a motion all but reaches a dead point, in words; "" if its transmission angles are not
+    that small.
+    """
+    unit = motion.units.angle
+    least, place = least_in_rows(motion) * unit.radians, ""
+    if whole is not None and whole.dyads and least < _LOOKED_AT:
+        angle = whole.least_transmission(_DEAD)
+        lead = motion.quantities.names.lead
+        # where smaller angles are not excluded, they count
+        least, place = angle.low, f" near {lead} = {angle.at:.6g} {motion.input_units[lead]}"
+        least = angle.high if angle.high < _DEAD else least
+    if not least < _DEAD:
+        return ""
+    shown = f"{unit.from_radians(least):.2g}{unit.sign}"
+    bound = (
+        f"{shown} or less is not excluded" if place and angle.high >= _DEAD else f"down to {shown}"
+    )
+    return f"nearly a dead point: transmission angle {bound}{place}"
 
 
 # ----------------------------------------------------------------------

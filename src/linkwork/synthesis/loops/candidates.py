@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
-from dataclasses import dataclass, field, fields, replace
+from dataclasses import dataclass, field, replace
 from enum import Enum
 from typing import Any
 
 import numpy as np
 
-from linkwork.core.foundation.arrays import Array, BoolArray, ComplexArray, IndexArray
+from linkwork.core.foundation.arrays import Array, Batch, BoolArray, ComplexArray
 from linkwork.core.foundation.rounding import UNIT_ROUNDOFF
 
 # roundings of one coordinate of a pose carried to another frame, and of products of two of them
@@ -108,24 +107,45 @@ class LoopKind(Enum):
     OLDHAM = "oldham-coupling"
 
     @property
+    def sides(self) -> tuple[Side, Side]:
+        """How A and B are held."""
+        return _SIDES[self]
+
+    @property
     def has_crank(self) -> bool:
         """Whether A turns about A0."""
-        return self not in (LoopKind.DOUBLE_SLIDER, LoopKind.RAPSON, LoopKind.OLDHAM)
+        return self.sides[0] is Side.PIN
 
     @property
     def pivots(self) -> tuple[str, ...]:
         """Its fixed pivots."""
-        if self is LoopKind.DOUBLE_SLIDER:
-            return ()
-        if self is LoopKind.RAPSON:
-            return ("B0",)
-        return ("A0",) if self is LoopKind.SLIDER_CRANK else ("A0", "B0")
+        sides = zip(("A0", "B0"), self.sides, strict=True)
+        return tuple(name for name, side in sides if side is not Side.LINE)
 
     @property
     def body_line(self) -> bool:
         """Whether a line of the body through B slides in a block at B0."""
-        return self in (LoopKind.INVERTED, LoopKind.RAPSON, LoopKind.OLDHAM)
+        return self.sides[1] is Side.BLOCK
 
+
+class Side(Enum):
+    """How a moving pivot is held: by a link to a fixed pivot, on a fixed line, or on a line of the
+    body that slides in a block, which swivels about a fixed pivot.
+    """
+
+    PIN = "pin"
+    LINE = "line"
+    BLOCK = "block"
+
+
+_SIDES = {
+    LoopKind.FOUR_BAR: (Side.PIN, Side.PIN),
+    LoopKind.SLIDER_CRANK: (Side.PIN, Side.LINE),
+    LoopKind.INVERTED: (Side.PIN, Side.BLOCK),
+    LoopKind.DOUBLE_SLIDER: (Side.LINE, Side.LINE),
+    LoopKind.RAPSON: (Side.LINE, Side.BLOCK),
+    LoopKind.OLDHAM: (Side.BLOCK, Side.BLOCK),
+}
 
 #: The names of mechanisms without a crank.
 GUIDED = tuple(kind.value for kind in LoopKind if not kind.has_crank)
@@ -144,9 +164,18 @@ class Drive(Enum):
         """Whether the input is an angle."""
         return self in (Drive.A0, Drive.B0)
 
+    @property
+    def at_b(self) -> bool:
+        """Whether it holds B."""
+        return self in (Drive.B0, Drive.SLIDER)
+
+
+def _unknown() -> ComplexArray:
+    return np.zeros(0, dtype=complex)
+
 
 @dataclass(frozen=True, kw_only=True, eq=False)
-class Candidates:
+class Candidates(Batch):
     """D designs of one kind that hold a body at N positions.
 
     The body is the coupler; its moving pivots are A and B, its guided point is P.
@@ -164,7 +193,7 @@ class Candidates:
     moving_a, moving_b : (D, N) complex
         The moving pivots at the positions [length].
     guided : (D, N) complex
-        The guided point P at the positions [length].
+        The guided point P at the positions; by default A [length].
     error : (D,)
         A bound of the error of every pivot at every position [length]; infinite where no proof
         holds.
@@ -178,17 +207,24 @@ class Candidates:
     kind: LoopKind
     fixed_a: ComplexArray
     fixed_b: ComplexArray
-    direction: ComplexArray
     moving_a: ComplexArray
     moving_b: ComplexArray
-    guided: ComplexArray
     error: Array
-    miss: Array
-    direction_a: ComplexArray = field(default_factory=lambda: np.zeros(0, dtype=complex))
+    guided: ComplexArray = field(default_factory=_unknown)
+    direction: ComplexArray = field(default_factory=_unknown)
+    direction_a: ComplexArray = field(default_factory=_unknown)
+    miss: Array = field(default_factory=lambda: _unknown().real)
 
     def __post_init__(self) -> None:
-        if not self.direction_a.size:
-            object.__setattr__(self, "direction_a", np.zeros_like(self.direction))
+        usual = {
+            "guided": self.moving_a,
+            "direction": np.zeros_like(self.fixed_a),
+            "direction_a": np.zeros_like(self.fixed_a),
+            "miss": np.zeros_like(self.error),
+        }
+        for name, array in usual.items():
+            if not getattr(self, name).size:
+                object.__setattr__(self, name, array)
 
     def __len__(self) -> int:
         return len(self.fixed_a)
@@ -196,9 +232,9 @@ class Candidates:
     @property
     def drives(self) -> tuple[Drive, ...]:
         """The links that can be driven."""
-        sliding = self.kind in (LoopKind.SLIDER_CRANK, LoopKind.DOUBLE_SLIDER)
-        first = Drive.A0 if "A0" in self.kind.pivots else Drive.SLIDER_A
-        return first, Drive.SLIDER if sliding else Drive.B0
+        one, other = self.kind.sides
+        first = Drive.SLIDER_A if one is Side.LINE else Drive.A0
+        return first, Drive.SLIDER if other is Side.LINE else Drive.B0
 
     @property
     def lines(self) -> ComplexArray:
@@ -214,24 +250,23 @@ class Candidates:
         along = self.moving_b - self.moving_a
         return np.asarray(direction[:, None] * along / np.abs(along))
 
-    def take(self, index: IndexArray | slice) -> Candidates:
-        """Some of the designs, in the order of ``index``."""
-        changes = {name: getattr(self, name)[index] for name in _ARRAYS}
-        return replace(self, **changes)
-
-    def driven_at_b(self) -> Candidates:
-        """The same designs with the names of both sides exchanged."""
-        # vectors in the frame of B - A, in the frame of A - B
-        sign = -1.0 if self.kind is LoopKind.OLDHAM else 1.0
-        return replace(
+    def driven_by(self, drive: Drive) -> tuple[Candidates, Side, Side]:
+        """The same designs with the driven side called A, and how both sides are held."""
+        one, other = self.kind.sides
+        if not drive.at_b:
+            return self, one, other
+        # lines of the body in the frame of B - A, in the frame of A - B
+        signs = [-1.0 if side is Side.BLOCK else 1.0 for side in (one, other)]
+        exchanged = replace(
             self,
-            direction=sign * self.direction_a,
-            direction_a=sign * self.direction,
+            direction=signs[0] * self.direction_a,
+            direction_a=signs[1] * self.direction,
             fixed_a=self.fixed_b,
             fixed_b=self.fixed_a,
             moving_a=self.moving_b,
             moving_b=self.moving_a,
         )
+        return exchanged, other, one
 
     def moved(self, shift: complex, factor: complex) -> Candidates:
         """The same designs turned and enlarged by a factor about 0, then moved."""
@@ -246,15 +281,3 @@ class Candidates:
             error=self.error * size + rounding,
             **changes,
         )
-
-    @classmethod
-    def joined(cls, parts: Iterable[Candidates]) -> Candidates:
-        """Designs of one kind in one container."""
-        every = list(parts)
-        together = {
-            name: np.concatenate([getattr(part, name) for part in every]) for name in _ARRAYS
-        }
-        return cls(kind=every[0].kind, **together)
-
-
-_ARRAYS = tuple(f.name for f in fields(Candidates) if f.name != "kind")

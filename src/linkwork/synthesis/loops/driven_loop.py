@@ -8,18 +8,8 @@ import numpy as np
 
 from linkwork.core.foundation.arrays import Array, BoolArray, ComplexArray, IndexArray
 from linkwork.core.foundation.units import FULL_TURN
-from linkwork.synthesis.loops.candidates import Candidates, Drive, LoopKind
-from linkwork.synthesis.loops.limits import (
-    PRODUCT,
-    DrivenLoops,
-    angle_error,
-    cross,
-    dot,
-    doubt_of,
-    guide_loops,
-    guide_pivots_at,
-    phase_of,
-)
+from linkwork.synthesis.loops.candidates import Candidates, Drive, Side
+from linkwork.synthesis.loops.limits import DrivenLoops, cross, dot, meeting
 
 
 def pivots_at(
@@ -39,67 +29,65 @@ def pivots_at(
     A, B, P : (D, K) complex
         NaN where the loop cannot be closed.
     """
-    if not candidates.kind.has_crank:
-        return guide_pivots_at(candidates, drive, loops, place)
-    if candidates.kind is LoopKind.INVERTED:
-        return _inverted_at(candidates, drive, loops, place)
-    other = candidates.driven_at_b() if drive is Drive.B0 else candidates
-    side = np.sign(loops.side[:, :1])
-    first, second = other.moving_a[:, :1], other.moving_b[:, :1]
-    length = np.abs(second - first)
-    with np.errstate(invalid="ignore"):
-        if drive is Drive.SLIDER:
-            b = other.fixed_b[:, None] + (place + loops.origin[:, None]) * other.direction[:, None]
-            crank = np.abs(first - other.fixed_a[:, None])
-            a = b + _closed(other.fixed_a[:, None] - b, length, crank, side)
+    driven, driver, other = candidates.driven_by(drive)
+    first, second = driven.moving_a[:, :1], driven.moving_b[:, :1]
+    fixed, end = driven.fixed_a[:, None], driven.fixed_b[:, None]
+    value = place + loops.origin[:, None]
+    with np.errstate(all="ignore"):
+        if driver is Side.BLOCK:
+            turn = np.exp(1j * value) / driven.lines_a[:, :1]
+            a = _behind_block(driven, other, turn, loops, place)
         else:
-            phase = np.exp(1j * (place + loops.origin[:, None]))
-            fixed = other.fixed_a[:, None]
-            a = fixed + np.abs(first - fixed) * phase
-            if candidates.kind is LoopKind.FOUR_BAR:
-                pivot = other.fixed_b[:, None]
-                b = a + _closed(pivot - a, length, np.abs(second - pivot), side)
-            else:
-                along = other.direction[:, None]
-                height = dot(1j * along, a - other.fixed_b[:, None])
-                b = a + (side * np.sqrt(length**2 - height**2) - 1j * height) * along
-    body = (other.guided[:, :1] - first) / (second - first)
-    p = a + body * (b - a)
-    return (b, a, p) if drive is Drive.B0 else (a, b, p)
+            along_line = driver is Side.LINE
+            phase = value * driven.direction_a[:, None] if along_line else np.exp(1j * value)
+            a = fixed + (1.0 if along_line else np.abs(first - fixed)) * phase
+            turn = _closed(driven, other, end - a, np.sign(loops.side[:, :1]))
+    b = a + (second - first) * turn
+    p = a + (driven.guided[:, :1] - first) * turn
+    return (b, a, p) if drive.at_b else (a, b, p)
 
 
-def _inverted_at(
-    candidates: Candidates, drive: Drive, loops: DrivenLoops, place: Array
-) -> tuple[ComplexArray, ComplexArray, ComplexArray]:
-    """The same of inverted slider-cranks."""
-    side = np.sign(loops.side[:, :1])
-    first, block = candidates.moving_a[:, :1], candidates.fixed_b[:, None]
-    line, fixed = candidates.lines[:, :1], candidates.fixed_a[:, None]
-    phase = np.exp(1j * (place + loops.origin[:, None]))
-    with np.errstate(invalid="ignore"):
-        if drive is Drive.A0:
-            a = fixed + np.abs(first - fixed) * phase
-            # B0 - A = (s + ih) times the line
-            base, h = block - a, cross(line, block - first)
-            along = base / (side * np.sqrt(base.real**2 + base.imag**2 - h**2) + 1j * h)
-        else:
-            along = phase
-            across = loops.q(place)
-            reach = side * np.sqrt(np.abs(first - fixed) ** 2 - across**2)
-            a = fixed + (reach + 1j * across) * along
-    b = a + (candidates.moving_b[:, :1] - first) / line * along
-    p = a + (candidates.guided[:, :1] - first) / line * along
-    return a, b, p
+def _behind_block(
+    driven: Candidates, other: Side, turn: ComplexArray, loops: DrivenLoops, place: Array
+) -> ComplexArray:
+    """A on a body that a block at A0 has turned by factors ``turn``."""
+    first, second = driven.moving_a[:, :1], driven.moving_b[:, :1]
+    fixed, end = driven.fixed_a[:, None], driven.fixed_b[:, None]
+    line = driven.lines_a[:, :1]
+    if other is Side.BLOCK:
+        start = meeting(fixed, line, end, driven.lines[:, :1])
+        crossing = meeting(fixed, line * turn, end, driven.lines[:, :1] * turn)
+        return np.asarray(crossing + (first - start) * turn)
+    if other is Side.PIN:
+        across = loops.q(place)
+        reach = np.sign(loops.side[:, :1]) * np.sqrt(np.abs(second - end) ** 2 - across**2)
+        b = end + (reach + 1j * across) * line * turn
+    else:
+        guide, along, h = driven.direction[:, None], line * turn, cross(line, fixed - second)
+        b = end + (cross(along, fixed - end) - h) / cross(along, guide) * guide
+    return np.asarray(b + (first - second) * turn)
 
 
-def _closed(base: ComplexArray, one: Array, other: Array, side: Array) -> ComplexArray:
-    """The vector of length ``one`` from the start of the base to the apex of a triangle, whose
-    other side has length ``other``.
+def _closed(driven: Candidates, other: Side, base: ComplexArray, side: Array) -> ComplexArray:
+    """The factors that turn the body so that the loop closes; ``base``: B0 - A, or to a point of
+    the line of B.
     """
+    first, second = driven.moving_a[:, :1], driven.moving_b[:, :1]
     square = base.real**2 + base.imag**2
-    along = 0.5 * (square + one**2 - other**2)
-    across = np.sqrt(square * one**2 - along**2)
-    return np.asarray(base * (along + 1j * side * across) / square)
+    length = np.abs(second - first)
+    if other is Side.BLOCK:
+        # B0 - A = (s + ih) times the line
+        line = driven.lines[:, :1]
+        h = cross(line, driven.fixed_b[:, None] - first)
+        return np.asarray(base / (side * np.sqrt(square - h**2) + 1j * h) / line)
+    if other is Side.LINE:
+        guide = driven.direction[:, None]
+        height = -dot(1j * guide, base)
+        coupler = (side * np.sqrt(length**2 - height**2) - 1j * height) * guide
+    else:
+        along = 0.5 * (square + length**2 - np.abs(second - driven.fixed_b[:, None]) ** 2)
+        coupler = base * (along + 1j * side * np.sqrt(square * length**2 - along**2)) / square
+    return np.asarray(coupler / (second - first))
 
 
 # ----------------------------------------------------------------------
@@ -290,200 +278,3 @@ def _passes(loops: DrivenLoops, begin: Array, end: Array, pole: float) -> BoolAr
     """Whether ranges contain a place, up to whole turns of an angle."""
     ahead = np.mod(pole - begin, FULL_TURN) if loops.turns else pole - begin
     return np.asarray((ahead >= 0) & (ahead <= end - begin))
-
-
-# ----------------------------------------------------------------------
-# One loop and its input: where it can move, with bounds of the errors of every sign.
-#
-# With the input φ (an angle) or s (a slider's displacement) the loop closes where
-#
-#     low ≤ q ≤ high,    q = q0 + q1 cos(φ - φ0)  or  q = q0 + s²,                         eq. (144)
-#
-# | loop | q | low, high | the side of the loop: sign of |
-# |---|---|---|---|
-# | four-bar driven at A0 | \|A - B0\|² | (b - c)², (b + c)² | (B - A) × (B - B0) |
-# | slider-crank driven at A0 | distance of A from the line | -c, c | (B - A) · line |
-# | slider-crank driven at B | \|B - A0\|² | (a - c)², (a + c)² | (A - B) × (A - A0) |
-# | inverted slider-crank driven at A0 | \|A - B0\|² | h², ∞ | (B0 - A) · line |
-# | inverted slider-crank driven at B0 | (A - A0) across the line | -a, a | (A - A0) · line |
-#
-# h is the distance of A from the line of the coupler, which slides through B0.
-#
-# A loop changes its side only at a limit, which is a dead point. Each limit that is reached cuts
-# the circle of inputs around one of its poles φ0, φ0 + π: two limits leave two circuits, one limit
-# one circuit, none two circuits that differ in their side.
-
-
-def driven_loops(candidates: Candidates, drive: Drive) -> DrivenLoops:
-    """The loops of designs with one driven link."""
-    if not candidates.kind.has_crank:
-        return guide_loops(candidates, drive)
-    if candidates.kind is LoopKind.FOUR_BAR:
-        return _four_bars(candidates if drive is Drive.A0 else candidates.driven_at_b())
-    if candidates.kind is LoopKind.INVERTED:
-        return _inverted(candidates) if drive is Drive.A0 else _driven_blocks(candidates)
-    return _slider_cranks(candidates) if drive is Drive.A0 else _driven_sliders(candidates)
-
-
-def _four_bars(candidates: Candidates) -> DrivenLoops:
-    crank = candidates.moving_a - candidates.fixed_a[:, None]
-    coupler = candidates.moving_b - candidates.moving_a
-    rocker = candidates.moving_b - candidates.fixed_b[:, None]
-    ground = candidates.fixed_b - candidates.fixed_a
-    a, b, c = (np.abs(v[:, 0]) for v in (crank, rocker, coupler))
-    g = np.abs(ground)
-    size = np.maximum(np.maximum(a, b), np.maximum(c, g))
-    doubt = doubt_of(candidates, size)
-    toward = phase_of(ground)
-    with np.errstate(all="ignore"):
-        cosine = (b**2 + c**2) / (2.0 * b * c), -1.0 / (2.0 * b * c)
-    return DrivenLoops(
-        turns=True,
-        input=phase_of(crank),
-        input_error=angle_error(a, doubt),
-        origin=toward + np.pi,
-        q0=a**2 + g**2,
-        q1=2.0 * a * g,
-        low=(b - c) ** 2,
-        high=(b + c) ** 2,
-        upper=(a + g) - (b + c),
-        lower=np.abs(b - c) - np.abs(a - g),
-        limit_error=4.0 * doubt,
-        side=cross(coupler, rocker),
-        half=cross(crank, ground[:, None]),
-        sign_error=PRODUCT * size * doubt,
-        q_error=4.0 * PRODUCT * size * doubt,
-        cosine=cosine,
-        offset=np.zeros_like(a),
-    )
-
-
-def _slider_cranks(candidates: Candidates) -> DrivenLoops:
-    crank = candidates.moving_a - candidates.fixed_a[:, None]
-    rod = candidates.moving_b - candidates.moving_a
-    normal = 1j * candidates.direction
-    a, c = np.abs(crank[:, 0]), np.abs(rod[:, 0])
-    height = dot(normal, candidates.fixed_a - candidates.fixed_b)
-    size = np.maximum(np.maximum(a, c), np.abs(candidates.fixed_a - candidates.fixed_b))
-    doubt = doubt_of(candidates, size)
-    toward = phase_of(normal)
-    with np.errstate(all="ignore"):
-        cosine = np.zeros_like(c), 1.0 / c
-    return DrivenLoops(
-        turns=True,
-        input=phase_of(crank),
-        input_error=angle_error(a, doubt),
-        origin=toward,
-        q0=height,
-        q1=a,
-        low=-c,
-        high=c,
-        upper=height + a - c,
-        lower=a - height - c,
-        limit_error=4.0 * doubt,
-        side=dot(rod, candidates.direction[:, None]),
-        half=cross(normal[:, None], crank),
-        sign_error=PRODUCT * doubt,
-        q_error=4.0 * doubt,
-        cosine=cosine,
-        offset=np.zeros_like(a),
-    )
-
-
-def _driven_sliders(loops: Candidates) -> DrivenLoops:
-    crank = loops.moving_a - loops.fixed_a[:, None]
-    rod = loops.moving_a - loops.moving_b
-    a, c = np.abs(crank[:, 0]), np.abs(rod[:, 0])
-    to_crank = loops.fixed_a - loops.fixed_b
-    height = dot(1j * loops.direction, to_crank)
-    size = np.maximum(np.maximum(a, c), np.abs(loops.moving_b - loops.fixed_b[:, None]).max(axis=1))
-    size = np.maximum(size, np.abs(to_crank))
-    doubt = doubt_of(loops, size)
-    foot = dot(loops.direction, to_crank)
-    s = dot(loops.direction[:, None], loops.moving_b - loops.fixed_b[:, None])
-    with np.errstate(all="ignore"):
-        cosine = (a**2 + c**2) / (2.0 * a * c), -1.0 / (2.0 * a * c)
-    return DrivenLoops(
-        turns=False,
-        input=s,
-        input_error=4.0 * doubt,
-        origin=foot,
-        q0=height**2,
-        q1=np.ones_like(a),
-        low=(a - c) ** 2,
-        high=(a + c) ** 2,
-        # a slider far enough away reaches the outer limit always
-        upper=np.full_like(a, np.inf),
-        lower=np.abs(a - c) - np.abs(height),
-        limit_error=4.0 * doubt,
-        side=cross(rod, crank),
-        half=size[:, None] * (s - foot[:, None]),
-        sign_error=PRODUCT * size * doubt,
-        q_error=4.0 * PRODUCT * size * doubt,
-        cosine=cosine,
-        offset=np.zeros_like(a),
-    )
-
-
-def _inverted(candidates: Candidates) -> DrivenLoops:
-    crank = candidates.moving_a - candidates.fixed_a[:, None]
-    ground = candidates.fixed_b - candidates.fixed_a
-    to_block, lines = candidates.fixed_b[:, None] - candidates.moving_a, candidates.lines
-    a, g = np.abs(crank[:, 0]), np.abs(ground)
-    h = np.abs(cross(lines[:, 0], to_block[:, 0]))
-    size = np.maximum(np.maximum(a, g), np.abs(to_block).max(axis=1))
-    doubt = 2.0 * doubt_of(candidates, size)
-    return DrivenLoops(
-        turns=True,
-        input=phase_of(crank),
-        input_error=angle_error(a, doubt),
-        origin=phase_of(ground) + np.pi,
-        q0=a**2 + g**2,
-        q1=2.0 * a * g,
-        low=h**2,
-        high=np.full_like(h, np.inf),
-        # a block on an endless line limits one side only
-        upper=np.full_like(h, -np.inf),
-        lower=h - np.abs(a - g),
-        limit_error=4.0 * doubt,
-        side=size[:, None] * dot(lines, to_block),
-        half=cross(crank, ground[:, None]),
-        sign_error=PRODUCT * size * doubt,
-        q_error=4.0 * PRODUCT * size * doubt,
-        cosine=(np.zeros_like(h), np.zeros_like(h)),
-        # rounding alone makes an offset of zero positive
-        offset=h + doubt,
-    )
-
-
-def _driven_blocks(candidates: Candidates) -> DrivenLoops:
-    crank = candidates.moving_a - candidates.fixed_a[:, None]
-    ground = candidates.fixed_a - candidates.fixed_b
-    to_block, lines = candidates.fixed_b[:, None] - candidates.moving_a, candidates.lines
-    a, g = np.abs(crank[:, 0]), np.abs(ground)
-    # A is h to the right of the line, A0 is g cos(φ - φ0) to the right of its parallel through B0
-    h = cross(lines[:, 0], to_block[:, 0])
-    size = np.maximum(np.maximum(a, g), np.abs(to_block).max(axis=1))
-    doubt = 2.0 * doubt_of(candidates, size)
-    toward = phase_of(ground) + 0.5 * np.pi
-    with np.errstate(all="ignore"):
-        cosine = np.zeros_like(a), 1.0 / a
-    return DrivenLoops(
-        turns=True,
-        input=phase_of(lines),
-        input_error=angle_error(size, doubt),
-        origin=toward,
-        q0=-h,
-        q1=g,
-        low=-a,
-        high=a,
-        upper=g - h - a,
-        lower=g + h - a,
-        limit_error=4.0 * doubt,
-        side=dot(crank, lines),
-        half=cross(1j * ground[:, None], lines),
-        sign_error=PRODUCT * doubt,
-        q_error=4.0 * doubt,
-        cosine=cosine,
-        offset=np.zeros_like(a),
-    )

@@ -2,14 +2,15 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, fields, replace
+from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 
-from linkwork.core.foundation.arrays import Array, BoolArray, ComplexArray, IndexArray
+from linkwork.core.foundation.arrays import Array, Batch, BoolArray, ComplexArray
 from linkwork.core.foundation.rounding import UNIT_ROUNDOFF
 from linkwork.core.foundation.units import FULL_TURN
-from linkwork.synthesis.loops.candidates import Candidates, Drive, LoopKind
+from linkwork.synthesis.loops.candidates import Candidates, Drive, Side
 
 # roundings of a vector between two points, its length, and sums of four lengths
 _VECTOR = 16.0 * UNIT_ROUNDOFF
@@ -18,7 +19,7 @@ PRODUCT = 2.25
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
-class DrivenLoops:
+class DrivenLoops(Batch):
     """D loops at N positions.
 
     Parameters
@@ -44,7 +45,7 @@ class DrivenLoops:
         A bound of the errors of both.
     q_error : (D,)
         A bound of the errors of q and of its limits.
-    cosine : tuple of (D,)
+    cosine : (D, 2)
         c0, c1: the cosine of the transmission angle is c0 + c1 q, or that is its square.
     offset : (D,)
         h: for a line that is driven at A the cosine is h/√q; else 0.
@@ -67,7 +68,7 @@ class DrivenLoops:
     half: Array
     sign_error: Array
     q_error: Array
-    cosine: tuple[Array, Array]
+    cosine: Array
     offset: Array
     squared: bool = False
 
@@ -81,16 +82,6 @@ class DrivenLoops:
         """Whether inputs of one circuit are on one half."""
         both = (self.upper > 0) & (self.lower > 0)
         return both if self.turns else self.lower > 0
-
-    def take(self, index: IndexArray) -> DrivenLoops:
-        """Some of the loops, in the order of ``index``."""
-        arrays = {
-            f.name: getattr(self, f.name)[index]
-            for f in fields(self)
-            if f.name not in ("turns", "cosine", "squared")
-        }
-        c0, c1 = self.cosine
-        return replace(self, cosine=(c0[index], c1[index]), **arrays)
 
     def extremes(self, first: Array, last: Array) -> Array:
         """q where it may be least or largest between places (D,), (D,): (D, K)."""
@@ -106,7 +97,7 @@ class DrivenLoops:
 
     def least_transmission(self, first: Array, last: Array) -> Array:
         """A lower bound of min(μ, π - μ) between places (D,), (D,) [rad]."""
-        c0, c1 = self.cosine
+        c0, c1 = self.cosine.T
         q = self.extremes(first, last)
         # a link of no length has no transmission angle
         with np.errstate(all="ignore"):
@@ -155,47 +146,146 @@ def phase_of(v: ComplexArray) -> Array:
 
 
 # ----------------------------------------------------------------------
-# Loops without a crank: two dyads of which each has a slider.
+# One loop and its input: where it can move, with bounds of the errors of every sign.
 #
-# The limits of :mod:`~linkwork.design.loops.driven_loop` for them, eq. (144), with the input s or
-# φ measured from its origin:
+# The driven side is called A. With the input φ (an angle) or s (a displacement along a line) the
+# loop closes where
 #
-# | loop | q | low, high | the side of the loop: sign of |
+#     low ≤ q ≤ high,    q = q0 + q1 cos(φ - φ0)  or  q = q0 + s²,                         eq. (144)
+#
+# | driven side, other side | q | low, high | the side of the loop: sign of |
 # |---|---|---|---|
-# | double slider driven at A | s² | none, (c / sin α)² | (B - A) · line of B |
-# | Rapson's slide driven at A | \|A - B0\|² = H² + s² | h², none | (B0 - A) · line of the body |
-# | Rapson's slide driven at B0 | cos φ | -1, 1 | none |
-# | Oldham's coupling | none | none | none |
+# | crank or slider, rocker | \|A - B0\|² | (b - c)², (b + c)² | (B - A) × (B - B0) |
+# | crank or slider, block | \|A - B0\|² | h², ∞ | (B0 - A) · line of the body |
+# | crank, slider | distance of A from the line | -c, c | (B - A) · line |
+# | slider, slider | s² | none, (c / sin α)² | (B - A) · line of B |
+# | block, rocker | (B - B0) across the line | -b, b | (B - B0) · line of the body |
+# | block, slider | cos φ | -1, 1 | none |
+# | block, block | none | none | none |
 #
-# α is the angle between the lines, c the distance of A and B, H that of B0 from the fixed line, h
-# that of A from the body's line. A block at B0 that turns Rapson's slide parallel to its fixed line
-# drives A to infinity: both limits are reached, and leave two circuits.
+# h is the distance of A from the body's line, which slides in the block at B0; α is the angle
+# between two fixed lines, c the distance of A and B. A block that turns the line of the body
+# parallel to a fixed line drives B to infinity: both limits are reached, and leave two circuits.
+#
+# A loop changes its side only at a limit, which is a dead point. Each limit that is reached cuts
+# the circle of inputs around one of its poles φ0, φ0 + π: two limits leave two circuits, one limit
+# one circuit, none two circuits that differ in their side.
 
 
-def guide_loops(candidates: Candidates, drive: Drive) -> DrivenLoops:
-    """The loops of designs without a crank, with one driven link."""
-    if candidates.kind is LoopKind.DOUBLE_SLIDER:
-        return _double_sliders(candidates if drive is Drive.SLIDER_A else candidates.driven_at_b())
-    if candidates.kind is LoopKind.OLDHAM:
-        return _couplings(candidates if drive is Drive.A0 else candidates.driven_at_b())
-    return _slides(candidates) if drive is Drive.SLIDER_A else _driven_blocks(candidates)
+def driven_loops(candidates: Candidates, drive: Drive) -> DrivenLoops:
+    """The loops of designs with one driven link."""
+    driven, driver, other = candidates.driven_by(drive)
+    if driver is Side.BLOCK:
+        of_blocks = {Side.PIN: _block_and_rocker, Side.LINE: _block_and_slider, Side.BLOCK: _blocks}
+        return of_blocks[other](driven)
+    if other is Side.LINE:
+        return (_crank_and_slider if driver is Side.PIN else _sliders)(driven)
+    return _to_pivot(driven, driver, other)
 
 
-def _double_sliders(candidates: Candidates) -> DrivenLoops:
-    rod, line = candidates.moving_b - candidates.moving_a, candidates.direction
-    c, sine = np.abs(rod[:, 0]), np.abs(cross(candidates.direction_a, line))
-    s = dot(candidates.direction_a[:, None], candidates.moving_a - candidates.fixed_a[:, None])
-    origin = _crossing(candidates)
-    size = np.maximum(c, np.abs(candidates.moving_b - candidates.fixed_b[:, None]).max(axis=1))
-    size = np.maximum(size, np.abs(candidates.fixed_b - candidates.fixed_a))
-    doubt = doubt_of(candidates, size)
+def _to_pivot(driven: Candidates, driver: Side, other: Side) -> DrivenLoops:
+    """A crank or a slider brings A to a distance from B0 that a rocker or a block allows."""
+    arm = driven.moving_a - driven.fixed_a[:, None]
+    coupler = driven.moving_b - driven.moving_a
+    rocker = driven.moving_b - driven.fixed_b[:, None]
+    to_block = driven.fixed_b[:, None] - driven.moving_a
+    ground = driven.fixed_b - driven.fixed_a
+    a, b, c, g = (np.abs(v) for v in (arm[:, 0], rocker[:, 0], coupler[:, 0], ground))
+    size = np.maximum(np.abs(arm).max(axis=1), g)
+    if other is Side.PIN:
+        size = np.maximum(size, np.maximum(b, c))
+        doubt = doubt_of(driven, size)
+    else:
+        size = np.maximum(size, np.abs(to_block).max(axis=1))
+        doubt = 2.0 * doubt_of(driven, size)
+    if driver is Side.PIN:
+        near, far = np.abs(a - g), a + g
+        input_of: dict[str, Any] = {
+            "input": phase_of(arm),
+            "input_error": angle_error(a, doubt),
+            "origin": phase_of(ground) + np.pi,
+            "q0": a**2 + g**2,
+            "q1": 2.0 * a * g,
+            "half": cross(arm, ground[:, None]),
+        }
+    else:
+        foot, height = dot(driven.direction_a, ground), cross(driven.direction_a, ground)
+        s = dot(driven.direction_a[:, None], arm)
+        # a slider far enough away reaches the outer limit always
+        near, far = np.abs(height), np.full_like(g, np.inf)
+        input_of = {
+            "input": s,
+            "input_error": 4.0 * doubt,
+            "origin": foot,
+            "q0": height**2,
+            "q1": np.ones_like(g),
+            "half": size[:, None] * (s - foot[:, None]),
+        }
+    if other is Side.PIN:
+        with np.errstate(all="ignore"):
+            cosine = np.stack([(b**2 + c**2) / (2.0 * b * c), -1.0 / (2.0 * b * c)], axis=1)
+        limits_of: dict[str, Any] = {
+            "low": (b - c) ** 2,
+            "high": (b + c) ** 2,
+            "upper": far - (b + c),
+            "lower": np.abs(b - c) - near,
+            "side": cross(coupler, rocker),
+            "cosine": cosine,
+        }
+    else:
+        lines = driven.lines
+        h = np.abs(cross(lines[:, 0], to_block[:, 0]))
+        limits_of = {
+            "low": h**2,
+            "high": np.full_like(h, np.inf),
+            # a block on an endless line limits one side only
+            "upper": np.full_like(h, -np.inf),
+            "lower": h - near,
+            "side": size[:, None] * dot(lines, to_block),
+            # rounding alone makes an offset of zero positive
+            "offset": h + doubt,
+        }
+    return _loops(
+        doubt, size, turns=driver is Side.PIN, q_error=4.0 * PRODUCT * size * doubt,
+        **input_of, **limits_of,
+    )  # fmt: skip
+
+
+def _crank_and_slider(driven: Candidates) -> DrivenLoops:
+    crank = driven.moving_a - driven.fixed_a[:, None]
+    rod = driven.moving_b - driven.moving_a
+    normal = 1j * driven.direction
+    a, c = np.abs(crank[:, 0]), np.abs(rod[:, 0])
+    height = dot(normal, driven.fixed_a - driven.fixed_b)
+    size = np.maximum(np.maximum(a, c), np.abs(driven.fixed_a - driven.fixed_b))
+    doubt = doubt_of(driven, size)
+    return _loops(
+        doubt,
+        input=phase_of(crank),
+        input_error=angle_error(a, doubt),
+        origin=phase_of(normal),
+        side=dot(rod, driven.direction[:, None]),
+        half=cross(normal[:, None], crank),
+        **_swing(height, a, c),
+    )
+
+
+def _sliders(driven: Candidates) -> DrivenLoops:
+    rod, line = driven.moving_b - driven.moving_a, driven.direction
+    c, sine = np.abs(rod[:, 0]), np.abs(cross(driven.direction_a, line))
+    s = dot(driven.direction_a[:, None], driven.moving_a - driven.fixed_a[:, None])
+    ground = driven.fixed_b - driven.fixed_a
+    size = np.maximum(c, np.abs(driven.moving_b - driven.fixed_b[:, None]).max(axis=1))
+    doubt = doubt_of(driven, np.maximum(size, np.abs(ground)))
     with np.errstate(all="ignore"):
         # of the crossing of two lines, and of distances from it
+        origin = cross(ground, line) / cross(driven.direction_a, line)
         place_error = 4.0 * doubt / sine
         farthest = np.maximum(np.abs(s - origin[:, None]).max(axis=1), c / sine)
         high = (c / sine) ** 2
-        cosine = np.zeros_like(c), 1.0 / high
-    return DrivenLoops(
+        cosine = np.stack([np.zeros_like(c), 1.0 / high], axis=1)
+    return _loops(
+        doubt,
         turns=False,
         input=s,
         input_error=place_error,
@@ -209,146 +299,107 @@ def _double_sliders(candidates: Candidates) -> DrivenLoops:
         limit_error=place_error,
         side=dot(rod, line[:, None]),
         half=s - origin[:, None],
-        sign_error=PRODUCT * doubt,
         q_error=PRODUCT * (2.0 * farthest + place_error) * place_error,
         cosine=cosine,
-        offset=np.zeros_like(c),
         squared=True,
     )
 
 
-def _slides(loops: Candidates) -> DrivenLoops:
-    to_block, lines = loops.fixed_b[:, None] - loops.moving_a, loops.lines
-    from_line = loops.fixed_b - loops.fixed_a
-    height, origin = (cross(loops.direction_a, from_line), dot(loops.direction_a, from_line))
-    s = dot(loops.direction_a[:, None], loops.moving_a - loops.fixed_a[:, None])
-    h = np.abs(cross(lines[:, 0], to_block[:, 0]))
-    size = np.maximum(np.abs(from_line), np.abs(to_block).max(axis=1))
-    doubt = 2.0 * doubt_of(loops, size)
-    none = np.zeros_like(h)
-    return DrivenLoops(
-        turns=False,
-        input=s,
-        input_error=4.0 * doubt,
-        origin=origin,
-        q0=height**2,
-        q1=np.ones_like(h),
-        low=h**2,
-        high=np.full_like(h, np.inf),
-        # a block on an endless line limits one side only
-        upper=np.full_like(h, -np.inf),
-        lower=h - np.abs(height),
-        limit_error=4.0 * doubt,
-        side=size[:, None] * dot(lines, to_block),
-        half=size[:, None] * (s - origin[:, None]),
-        sign_error=PRODUCT * size * doubt,
-        q_error=4.0 * PRODUCT * size * doubt,
-        cosine=(none, none),
-        # rounding alone makes an offset of zero positive
-        offset=h + doubt,
+def _block_and_rocker(driven: Candidates) -> DrivenLoops:
+    rocker = driven.moving_b - driven.fixed_b[:, None]
+    ground = driven.fixed_b - driven.fixed_a
+    to_block, lines = driven.fixed_a[:, None] - driven.moving_b, driven.lines_a
+    b, g = np.abs(rocker[:, 0]), np.abs(ground)
+    # B is h to the right of the line, B0 is g cos(φ - φ0) to the right of its parallel through A0
+    h = cross(lines[:, 0], to_block[:, 0])
+    size = np.maximum(np.maximum(b, g), np.abs(to_block).max(axis=1))
+    doubt = 2.0 * doubt_of(driven, size)
+    return _loops(
+        doubt,
+        input=phase_of(lines),
+        input_error=angle_error(size, doubt),
+        origin=phase_of(ground) + 0.5 * np.pi,
+        side=dot(rocker, lines),
+        half=cross(1j * ground[:, None], lines),
+        **_swing(-h, g, b),
     )
 
 
-def _driven_blocks(candidates: Candidates) -> DrivenLoops:
-    to_block, lines = candidates.fixed_b[:, None] - candidates.moving_a, candidates.lines
+def _swing(q0: Array, q1: Array, length: Array) -> dict[str, Array]:
+    """Limits of a point that swings across a line, q0 + q1 cos(φ - φ0), held by a link."""
+    with np.errstate(all="ignore"):
+        cosine = np.stack([np.zeros_like(length), 1.0 / length], axis=1)
+    return {
+        "q0": q0,
+        "q1": q1,
+        "low": -length,
+        "high": length,
+        "upper": q0 + q1 - length,
+        "lower": q1 - q0 - length,
+        "cosine": cosine,
+    }
+
+
+def _block_and_slider(driven: Candidates) -> DrivenLoops:
+    to_block, lines = driven.fixed_a[:, None] - driven.moving_b, driven.lines_a
     size = np.abs(to_block).max(axis=1)
-    doubt = 2.0 * doubt_of(candidates, size)
+    doubt = 2.0 * doubt_of(driven, size)
     none, one = np.zeros_like(size), np.ones_like(size)
-    return DrivenLoops(
-        turns=True,
+    error = angle_error(size, doubt)
+    return _loops(
+        doubt,
         input=phase_of(lines),
-        input_error=angle_error(size, doubt),
-        origin=phase_of(candidates.direction_a),
+        input_error=error,
+        origin=phase_of(driven.direction),
         q0=none,
         q1=one,
         low=-one,
         high=one,
         upper=size,
         lower=size,
-        limit_error=4.0 * doubt,
         side=np.broadcast_to(size[:, None], lines.shape),
-        half=size[:, None] * cross(candidates.direction_a[:, None], lines),
-        sign_error=PRODUCT * doubt,
-        q_error=4.0 * angle_error(size, doubt),
-        cosine=(none, one),
-        offset=none,
+        half=size[:, None] * cross(driven.direction[:, None], lines),
+        q_error=4.0 * error,
+        cosine=np.stack([none, one], axis=1),
     )
 
 
-def _couplings(candidates: Candidates) -> DrivenLoops:
-    lines, count = candidates.lines_a, len(candidates)
-    ground = np.abs(candidates.fixed_b - candidates.fixed_a)
-    doubt = 2.0 * doubt_of(candidates, ground)
-    arm = np.abs(candidates.moving_a - candidates.fixed_a[:, None]).max(axis=1) + ground
-    none, unlimited = np.zeros(count), np.full(count, np.inf)
-    return DrivenLoops(
-        turns=True,
+def _blocks(driven: Candidates) -> DrivenLoops:
+    lines, none = driven.lines_a, np.zeros(len(driven))
+    ground = np.abs(driven.fixed_b - driven.fixed_a)
+    doubt = 2.0 * doubt_of(driven, ground)
+    arm = np.abs(driven.moving_a - driven.fixed_a[:, None]).max(axis=1) + ground
+    return _loops(
+        0.0 * none,
         input=phase_of(lines),
         input_error=angle_error(arm, doubt),
         origin=none,
         q0=none,
         q1=none,
-        low=-unlimited,
-        high=unlimited,
-        upper=-unlimited,
-        lower=-unlimited,
-        limit_error=none,
+        low=none - np.inf,
+        high=none + np.inf,
+        upper=none - np.inf,
+        lower=none - np.inf,
         side=np.ones(lines.shape),
         half=np.ones(lines.shape),
-        sign_error=none,
-        q_error=none,
         # both blocks turn alike; the force of one acts across its line
-        cosine=(dot(candidates.direction_a, candidates.direction), none),
-        offset=none,
+        cosine=np.stack([dot(driven.direction_a, driven.direction), none], axis=1),
     )
 
 
-def _crossing(loops: Candidates) -> Array:
-    """The place of the crossing of both fixed lines along that of A, (D,)."""
-    away = loops.fixed_b - loops.fixed_a
-    with np.errstate(all="ignore"):
-        place = cross(away, loops.direction) / cross(loops.direction_a, loops.direction)
-    return np.asarray(place)
-
-
-def guide_pivots_at(
-    candidates: Candidates, drive: Drive, loops: DrivenLoops, place: Array
-) -> tuple[ComplexArray, ComplexArray, ComplexArray]:
-    """A, B and P at places (D, K), as :func:`~linkwork.synthesis.loops.driven_loop.pivots_at`
-    computes them.
+def _loops(doubt: Array, size: Array | float = 1.0, **numbers: Any) -> DrivenLoops:
+    """Loops whose errors are those of lengths with errors ``doubt`` (D,), or of their products with
+    lengths of some size, unless they are given.
     """
-    swapped = drive is Drive.SLIDER or (candidates.kind is LoopKind.OLDHAM and drive is Drive.B0)
-    driven = candidates.driven_at_b() if swapped else candidates
-    first, second = driven.moving_a[:, :1], driven.moving_b[:, :1]
-    fixed, block = driven.fixed_a[:, None], driven.fixed_b[:, None]
-    value, side = place + loops.origin[:, None], np.sign(loops.side[:, :1])
-    line_a = driven.direction_a[:, None]
-    with np.errstate(all="ignore"):
-        if driven.kind is LoopKind.OLDHAM:
-            turn = np.exp(1j * value) / driven.lines_a[:, :1]
-            start = meeting(fixed, driven.lines_a[:, :1], block, driven.lines[:, :1])
-            centre = meeting(fixed, driven.lines_a[:, :1] * turn, block, driven.lines[:, :1] * turn)
-            a = centre + (first - start) * turn
-        elif driven.kind is LoopKind.DOUBLE_SLIDER:
-            a, along = fixed + value * line_a, driven.direction[:, None]
-            height, length = dot(1j * along, a - block), np.abs(second - first)
-            b = a + (side * np.sqrt(length**2 - height**2) - 1j * height) * along
-            turn = (b - a) / (second - first)
-        else:
-            line = driven.lines[:, :1]
-            h = cross(line, block - first)
-            if drive is Drive.SLIDER_A:
-                a = fixed + value * line_a
-                base = block - a
-                reach = np.sqrt(base.real**2 + base.imag**2 - h**2)
-                turn = base / (side * reach + 1j * h) / line
-            else:
-                along = np.exp(1j * value)
-                way = (cross(along, block - fixed) - h) / cross(along, line_a)
-                a, turn = fixed + way * line_a, along / line
-        b = a + (second - first) * turn
-        p = a + (driven.guided[:, :1] - first) * turn
-    return (b, a, p) if swapped else (a, b, p)
+    usual = {
+        "turns": True,
+        "limit_error": 4.0 * doubt,
+        "sign_error": PRODUCT * size * doubt,
+        "q_error": 4.0 * doubt,
+        "cosine": np.zeros((len(doubt), 2)),
+        "offset": np.zeros_like(doubt),
+    }
+    return DrivenLoops(**{**usual, **numbers})
 
 
 def meeting(
@@ -356,26 +407,3 @@ def meeting(
 ) -> ComplexArray:
     """Where lines through points meet."""
     return np.asarray(one + along * cross(other - one, across) / cross(along, across))
-
-
-def guide_speeds(
-    candidates: Candidates, drive: Drive, loops: DrivenLoops, first: Array, last: Array
-) -> tuple[Array, Array]:
-    """Bounds of the speed of A, and of the turning of the body, per unit of the input, (D,)."""
-    sine, one = np.sin(loops.least_transmission(first, last)), np.ones(len(candidates))
-    ground = np.abs(candidates.fixed_b - candidates.fixed_a)
-    if candidates.kind is LoopKind.OLDHAM:
-        # the crossing of the body's lines runs around a circle through A0 and B0
-        centre = meeting(
-            candidates.fixed_a, candidates.lines_a[:, 0], candidates.fixed_b, candidates.lines[:, 0]
-        )  # fmt: skip
-        return ground / sine + np.abs(candidates.moving_a[:, 0] - centre), one
-    if candidates.kind is LoopKind.DOUBLE_SLIDER:
-        # either end moves along its line by at most 1 / sin μ, and across the other by at most 1
-        return 1.0 / sine, 1.0 / (np.abs(candidates.moving_b - candidates.moving_a)[:, 0] * sine)
-    h = np.abs(cross(candidates.lines[:, 0], candidates.fixed_b - candidates.moving_a[:, 0]))
-    if drive is Drive.SLIDER_A:
-        nearest = np.sqrt(np.maximum(loops.extremes(first, last).min(axis=1) - loops.q_error, 0.0))
-        return one, 1.0 / (nearest * sine)
-    height = np.abs(cross(candidates.direction_a, candidates.fixed_b - candidates.fixed_a))
-    return (height + h) / sine**2, one

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Iterator
 
 import numpy as np
 
@@ -19,6 +19,7 @@ from linkwork.synthesis.improvement.curves import (
     SliderCrankCurves,
 )
 from linkwork.synthesis.improvement.settings import Improvement
+from linkwork.synthesis.lane_problems import Progress, part_of
 from linkwork.synthesis.loops.candidates import Candidates, Drive, LoopKind
 from linkwork.synthesis.solvers.result import SolvedTask
 from linkwork.synthesis.tasks.conditions import LENGTHS, Wishes
@@ -40,8 +41,14 @@ _BOUNDED = {
     "A0 A": "crank", "A B": "coupler", "B0 B": "rocker", INPUT: INPUT,
 }  # fmt: skip
 
+#: Keys of improvements that fits of curves do not have, and their fields.
+_OF_IMPROVEMENTS = {
+    "vary": "vary", "goals": "goals", "front": "front", "point": "point", "goal": "fit",
+    "spread": "spread",
+}  # fmt: skip
 
-def solve_curve(task: Task, wishes: Wishes, progress: Callable[[float], None] | None) -> SolvedTask:
+
+def solve_curve(task: Task, wishes: Wishes, progress: Progress | None) -> SolvedTask:
     """The best four-bars and slider-cranks of a sample of starts: different fits.
 
     Raises
@@ -61,11 +68,7 @@ def solve_curve(task: Task, wishes: Wishes, progress: Callable[[float], None] | 
     fitted: list[FittedCurves] = []
     for k, kind in enumerate(kinds):
         rng = np.random.default_rng([settings.seed, k])
-
-        def tell(fraction: float, done: int = k) -> None:
-            if progress is not None:
-                progress((done + fraction) / len(kinds))
-
+        tell = part_of(progress, k / len(kinds), 1.0 / len(kinds))
         fitted.append(fit_curve(kind, goal, starts, rng, tell))
         if not fitted[-1].finished:
             break
@@ -161,24 +164,13 @@ def _bounds(task: Task, wishes: Wishes) -> Iterator[tuple[str, tuple[float, floa
             yield f"{name}.{axis}", (value, value)
     for name, length in task.given.lengths.items():
         yield _BOUNDED[name], (length, length)
-    bounds: Mapping[str, tuple[float, float]] = {}
-    if task.improvement is not None:
-        bounds = task.improvement.bounds
-        settings = task.improvement
-        others = {
-            "vary": settings.vary,
-            "goals": settings.goals,
-            "front": settings.front,
-            "point": settings.point,
-            "goal": settings.fit != Improvement.fit,
-            "spread": settings.spread != Improvement.spread,
-        }
-        for key, entry in others.items():
-            if entry:
-                message = 'belongs to task = "improve": leave it out'
-                task.refuse([(("improve", key), message)])
+    settings = task.improvement or Improvement()
+    for key, name in _OF_IMPROVEMENTS.items():
+        if getattr(settings, name) != getattr(Improvement, name):
+            message = 'belongs to task = "improve": leave it out'
+            task.refuse([(("improve", key), message)])
     placed = ("A0.x", "A0.y", "B0.x", "B0.y")[: 2 * len(task.given.fixed_pivots)]
-    for name, (low, high) in bounds.items():
+    for name, (low, high) in settings.bounds.items():
         message = ""
         if name not in _BOUNDED:
             message = "is no dimension: these are " + ", ".join(f'"{one}"' for one in _BOUNDED)

@@ -3,9 +3,8 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import replace
-from functools import partial
 from itertools import product
 
 import numpy as np
@@ -14,12 +13,13 @@ from linkwork.core.foundation.arrays import Array, BoolArray, ComplexArray, Inde
 from linkwork.core.foundation.rounding import UNIT_ROUNDOFF
 from linkwork.core.foundation.statuses import Completeness
 from linkwork.core.foundation.units import FULL_TURN
+from linkwork.synthesis.lane_problems import Progress
 from linkwork.synthesis.loops.candidates import Candidates, Drive, LoopKind, solve_with_bound
 from linkwork.synthesis.loops.limits import cross
 from linkwork.synthesis.poses.burmester import sampled_dyads
 from linkwork.synthesis.poses.dyad_set import DyadSet, PoseSet
 from linkwork.synthesis.poses.dyads import solve_five_poses
-from linkwork.synthesis.solvers.functions import FunctionWishes, fit_functions
+from linkwork.synthesis.solvers.functions import FittedPairs, fit_functions
 from linkwork.synthesis.solvers.result import SolvedTask
 from linkwork.synthesis.tasks.conditions import Wishes
 from linkwork.synthesis.tasks.task import Task
@@ -37,9 +37,7 @@ _SHARES = (0.067, 0.15, 0.25, 0.0)  # of the range, before the first point of a 
 _FIRSTS, _MIDDLES = (0.0, 0.067, 0.15, 0.25, 0.35), (0.4, 0.5, 0.6)
 
 
-def solve_function(
-    task: Task, wishes: Wishes, progress: Callable[[float], None] | None = None
-) -> SolvedTask:
+def solve_function(task: Task, wishes: Wishes, progress: Progress | None = None) -> SolvedTask:
     """All designs, or a sample of the family, for a function task."""
     goal = task.function
     assert goal is not None, "a task of functions has one"
@@ -66,7 +64,7 @@ def solve_function(
 
 
 def _solved(
-    task: Task, wishes: Wishes, u: Array, v: Array, progress: Callable[[float], None] | None
+    task: Task, wishes: Wishes, u: Array, v: Array, progress: Progress | None
 ) -> SolvedTask:
     """Designs whose fixed pivot A0 is at 0, for inputs and outputs (1, K)."""
     goal, slides = task.function, task.mechanisms[0] == "slider-crank"
@@ -163,9 +161,7 @@ def _loops(
             direction=np.full(len(u), slides, dtype=complex),
             moving_a=moving,
             moving_b=fixed_b[:, None] + output,
-            guided=moving,
             error=error,
-            miss=np.zeros(len(u)),
         )
     ]
 
@@ -213,7 +209,7 @@ def _fitted(
     u: Array,
     v: Array,
     slides: bool,
-    progress: Callable[[float], None] | None,
+    progress: Progress | None,
 ) -> SolvedTask:
     """Different fits of pairs, with given starts or by differences, from loops through three."""
     goal = task.function
@@ -227,22 +223,14 @@ def _fitted(
     ]
     starts.append((np.zeros((0, 5)), np.zeros(0)))
     x, side = (np.concatenate(part) for part in zip(*starts, strict=True))
-    size = float(np.ptp(v)) if slides else 1.0
     if usual := has_usual_ratio(task):
         # a slider-crank's lengths may grow without end; its output has a size
-        far = max(size, float(np.abs(v).max())) if goal.starts_fixed else size
+        far = max(float(np.ptp(v)), float(np.abs(v).max()) if goal.starts_fixed else 0.0)
         longest = USUAL_RATIO * far if slides else math.inf
         wishes = replace(wishes, ratio=USUAL_RATIO, longest=longest)
-    fits = fit_functions(
-        u,
-        v,
-        (x, side),
-        slides=slides,
-        minimax=goal.fit == "minimax",
-        first=first,
-        held=partial(FunctionWishes, wishes, u, size, slides),
-        progress=progress,
-    )
+    minimax = goal.fit == "minimax"
+    pairs = FittedPairs(u=u, v=v, slides=slides, minimax=minimax, first=first, wishes=wishes)
+    fits = fit_functions(pairs, (x, side), progress)
     made: list[Candidates] = []
     zeros: list[tuple[float, float]] = []
     for x_fit, wrong in zip(fits.x, fits.wrong, strict=True):

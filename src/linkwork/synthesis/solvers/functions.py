@@ -13,7 +13,13 @@ from linkwork.core.foundation.units import FULL_TURN
 from linkwork.synthesis.improvement.curve_fit import CurveConstraints
 from linkwork.synthesis.improvement.curves import CurveGoal, FourBarCurves, SliderCrankCurves
 from linkwork.synthesis.lane_least_squares import Box, Residuals, RowVariables, starts_of
-from linkwork.synthesis.lane_problems import POWERS, LaneProblem, Multipliers, different
+from linkwork.synthesis.lane_problems import (
+    POWERS,
+    LaneProblem,
+    Multipliers,
+    Progress,
+    different,
+)
 from linkwork.synthesis.loops.limits import dot
 from linkwork.synthesis.tasks.conditions import Wishes
 
@@ -197,8 +203,53 @@ _FAR = 1e3  # ratios of lengths
 _HARDLY = 0.01  # the sine of the least transmission angle
 _ALIKE = 0.02  # relative: lanes that end at one fit, or in one valley
 
-#: The requirements of so many lanes.
-Held = Callable[[int], FunctionWishes]
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class FittedPairs:
+    """What a fit follows.
+
+    Parameters
+    ----------
+    u, v : (N,)
+        Inputs [rad] and outputs [rad or length].
+    slides : bool
+        Whether the mechanism is a slider-crank.
+    minimax : bool
+        Whether the largest error counts, instead of the sum of squares.
+    first : (float, float), optional
+        Bounds of the angle that is added to the inputs [rad]; ``None``: starts are given.
+    wishes : Wishes
+    """
+
+    u: Array
+    v: Array
+    slides: bool
+    minimax: bool
+    first: tuple[float, float] | None
+    wishes: Wishes
+
+    @property
+    def size(self) -> float:
+        """Of lengths: the range of a slider, or 1 with a four-bar's ground."""
+        return float(np.ptp(self.v)) if self.slides else 1.0
+
+    def wishes_of(self, lanes: int) -> FunctionWishes:
+        """The requirements of so many lanes."""
+        return FunctionWishes(self.wishes, self.u, self.size, self.slides, lanes)
+
+    @property
+    def box(self) -> Box:
+        """Bounds of lengths, which may point the other way at given starts, and of starts."""
+        small, large = self.size / _FAR, _FAR * self.size
+        if self.first is None:
+            least, starts = [-large, -large, small], [(0.0, 0.0), (0.0, 0.0)]
+        else:
+            least = [small, -large if self.slides else small, small]
+            starts = [self.first, (-np.inf, np.inf)]
+        return Box(
+            least=np.array([*least, *(low for low, _ in starts)]),
+            most=np.array([large] * 3 + [high for _, high in starts]),
+        )
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -208,8 +259,6 @@ class FunctionFits:
     Parameters
     ----------
     x : (D, 5)
-    side : (D,)
-        Signs of the loops.
     wrong : (D, N)
         Structural errors at the pairs [rad or length].
     closes : (D,)
@@ -221,7 +270,6 @@ class FunctionFits:
     """
 
     x: Array
-    side: Array
     wrong: Array
     closes: BoolArray
     minimal: BoolArray
@@ -233,11 +281,12 @@ class _FunctionProblem(LaneProblem):
 
     most_lanes = 128
 
-    def __init__(self, u: Array, v: Array, slides: bool, side: Array, held: Held, box: Box) -> None:
-        self.u, self.v, self.side, self.wishes = u, v, side, held(len(side))
-        self.make = slider_errors if slides else rocker_errors
+    def __init__(self, pairs: FittedPairs, side: Array) -> None:
+        self.u, self.v, self.side = pairs.u, pairs.v, side
+        self.wishes = pairs.wishes_of(len(side))
+        self.make = slider_errors if pairs.slides else rocker_errors
         none = np.zeros(self.wishes.broken(np.ones((0, 5)), np.arange(0))[0].shape[1], dtype=bool)
-        super().__init__(box, RowVariables(), len(side), len(u), none)
+        super().__init__(pairs.box, RowVariables(), len(side), len(self.u), none)
 
     @property
     def multipliers(self) -> list[Multipliers]:
@@ -262,49 +311,33 @@ class _FunctionProblem(LaneProblem):
 
 
 def fit_functions(
-    u: Array,
-    v: Array,
-    starts: tuple[Array, Array],
-    *,
-    slides: bool,
-    minimax: bool,
-    first: tuple[float, float] | None,
-    held: Held,
-    progress: Callable[[float], None] | None = None,
+    pairs: FittedPairs, starts: tuple[Array, Array], progress: Progress | None = None
 ) -> FunctionFits:
-    """Fits of pairs (N,), (N,) from starts (D, 5) with their sides (D,).
+    """Fits of pairs from starts (D, 5) with their sides (D,).
 
-    ``first``: bounds of the angle that is added to the inputs [rad]; ``None``: starts are given.
-    ``held``: the wishes that so many lanes hold.
     Fits whose loops hardly close are left out but for the best one: most are no local minima, and
     end where errors would fall on beyond the last loop that closes.
     """
-    x, side = starts
-    size = float(np.ptp(v)) if slides else 1.0
-    box = _box(size, slides, first)
+    (x, side), box, minimax, first = starts, pairs.box, pairs.minimax, pairs.first
     if first is not None and np.isfinite(sum(first)):
         # whole turns that bring starts nearest to their bounds
         x[:, 3] += FULL_TURN * np.round((0.5 * sum(first) - x[:, 3]) / FULL_TURN)
     x = box.inside(x)
-
-    def problem_of(side: Array) -> _FunctionProblem:
-        return _FunctionProblem(u, v, slides, side, held, box)
-
-    lanes = problem_of(side)
+    lanes = _FunctionProblem(pairs, side)
     wrong = lanes.errors(x, np.arange(len(x)))[0]
     if not np.isfinite(wrong).all(axis=1).any():
         none = np.zeros(0, dtype=bool)
-        return FunctionFits(x=x[:0], side=side[:0], wrong=wrong[:0], closes=none, minimal=none)
+        return FunctionFits(x=x[:0], wrong=wrong[:0], closes=none, minimal=none)
     total = lanes.evaluate(x, x[:, :0], np.arange(len(x))).total
     some = np.argsort(total, kind="stable")[: min(_LANES, int(np.isfinite(total).sum()))]
-    lanes, side = problem_of(side[some]), side[some]
+    lanes, side = _FunctionProblem(pairs, side[some]), side[some]
     every = np.arange(len(some))
     fit = lanes.further(starts_of(x[some], np.zeros((len(some), 0))), every, _STEPS)
     for weight in _WEIGHTS if lanes.multipliers else ():
         lanes.weigh(weight)
         fit = lanes.further(fit, every, _POWER_STEPS)
     order = _different(fit.x, fit.total)[:_KEPT]
-    lanes, fit, side = problem_of(side[order]), fit.take(order), side[order]
+    lanes, fit = _FunctionProblem(pairs, side[order]), fit.take(order)
     powers = (*POWERS, *POWERS[-1:] * (len(_WEIGHTS) if lanes.multipliers else 0))
     lanes.work.tell, lanes.work.whole = progress, len(powers) * _POWER_STEPS
     for lanes.power in powers if minimax and not fit.interrupted else ():
@@ -313,31 +346,17 @@ def fit_functions(
     x, minimal = fit.x.copy(), np.zeros(len(fit), dtype=bool)
     for k in range(len(fit)) if minimax else ():
         sharp, least = _sharpened(lanes, x[k], k, box)
-        if not held(1).broken(sharp[None], np.zeros(1, dtype=np.intp))[0].any():
+        if not pairs.wishes_of(1).broken(sharp[None], np.zeros(1, dtype=np.intp))[0].any():
             x[k], minimal[k] = sharp, least
     wrong = lanes.errors(x, np.arange(len(x)))[0]
     measure = np.abs(wrong).max(axis=1, initial=0.0) if minimax else (wrong**2).sum(axis=1)
     index = _different(x, measure)
-    closes = _closes(x, u, slides) | minimal  # a proved minimum is one all the same
+    closes = _closes(x, pairs.u, pairs.slides) | minimal  # a proved minimum is one all the same
     index = index[closes[index] | (np.arange(len(index)) == 0)]
     return FunctionFits(
-        x=x[index], side=side[index], wrong=wrong[index], closes=closes[index],
+        x=x[index], wrong=wrong[index], closes=closes[index],
         minimal=minimal[index], interrupted=fit.interrupted,
     )  # fmt: skip
-
-
-def _box(size: float, slides: bool, first: tuple[float, float] | None) -> Box:
-    """Bounds of lengths, which may point the other way where starts are given, and of starts."""
-    small, large = size / _FAR, _FAR * size
-    if first is None:
-        least, starts = [-large, -large, small], [(0.0, 0.0), (0.0, 0.0)]
-    else:
-        least = [small, -large if slides else small, small]
-        starts = [first, (-np.inf, np.inf)]
-    return Box(
-        least=np.array([*least, *(low for low, _ in starts)]),
-        most=np.array([large] * 3 + [high for _, high in starts]),
-    )
 
 
 def _closes(x: Array, u: Array, slides: bool) -> BoolArray:

@@ -108,7 +108,7 @@ def improve_description(
     task.refuse((("improve", *key), message) for key, message in settings.front_problems(goals))
 
     def judged(design: ImprovedDesign) -> SweptDesign:
-        return SweptDesign(task=task, swept=lambda: design, wishes=wishes)
+        return SweptDesign.of(task, design, wishes)
 
     try:
         improved = improved_designs(

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
 from contextlib import suppress
 from dataclasses import dataclass, replace
 from itertools import chain, islice
@@ -10,7 +10,7 @@ from itertools import chain, islice
 import numpy as np
 
 from linkwork.core.foundation.arrays import Array, ComplexArray
-from linkwork.core.foundation.errors import MechanismError, Problem
+from linkwork.core.foundation.errors import MechanismError
 from linkwork.core.foundation.rounding import EPSILON
 from linkwork.core.foundation.statuses import Completeness
 from linkwork.synthesis.loops.candidates import GUIDED, Candidates, Drive, LoopKind
@@ -42,7 +42,6 @@ from linkwork.synthesis.tasks.task import Task
 
 _PIVOTS = {2: 12, 3: 60}  # of a family through so many poses; two leave further freedom
 _ON_CURVE = 1e-6  # relative to the size of the task: a given pivot on the centre-point curve
-_EXACT = 1e-12  # the same: pivots on it to rounding
 _CURVE_SAMPLES = 400
 _MOST_PARALLEL = 4  # three parallel poses still have parallelograms
 #: The centres of three positions of points of a body that translates differ like these points.
@@ -84,25 +83,25 @@ def _check_motion(task: Task, points: ComplexArray, angles: Array) -> None:
     # the pole of the first pose and the one turned most from it
     k = int(np.abs(turns - 1.0).argmax())
     if abs(turns[k] - 1.0) < _PARALLEL:
+        ways = points[1:] - points[0]
+        off = abs((ways[-1] * ways[0].conj()).imag) / (np.abs(ways) ** 2).max()
         if len(points) >= _MOST_PARALLEL:
             text = "all have the same angle: the body only translates, and two guides (a PP dyad) "
             text += "carry it through any such poses; no dyad with a pivot is determined"
-            raise _refused(task, "positions", text)
-        ways = points[1:] - points[0]
-        off = abs((ways[-1] * ways[0].conj()).imag) / (np.abs(ways) ** 2).max()
-        if len(ways) > 1 and not off > _PARALLEL:
+            task.refuse([(("positions",), text)])
+        elif len(ways) > 1 and not off > _PARALLEL:
             text = "have one angle and lie on a line: a slider along it carries the body, and no "
-            raise _refused(task, "positions", f"{text}linkage is determined")
-        return
-    if len(points) == 2 and points[0] != points[1]:
-        return
-    # not -0
-    pole = complex((turns[k] * points[0] - points[k]) / (turns[k] - 1.0)) + (0.0 + 0.0j)
-    size = max(float(np.abs(points - points[0]).max()), abs(points[0] - pole))
-    rounding = _ROUNDED * np.abs(points).max() / abs(turns[k] - 1.0)
-    if np.abs(pole + (points[0] - pole) * turns - points).max() <= _PARALLEL * size + rounding:
-        text = f"all lie on a rotation about [{pole.real:.6g}, {pole.imag:.6g}]: a fixed pin there "
-        raise _refused(task, "positions", f"{text}carries the body, and no linkage is determined")
+            task.refuse([(("positions",), f"{text}linkage is determined")])
+    elif len(points) > 2 or points[0] == points[1]:
+        # not -0
+        pole = complex((turns[k] * points[0] - points[k]) / (turns[k] - 1.0)) + (0.0 + 0.0j)
+        size = max(float(np.abs(points - points[0]).max()), abs(points[0] - pole))
+        rounding = _ROUNDED * np.abs(points).max() / abs(turns[k] - 1.0)
+        away = np.abs(pole + (points[0] - pole) * turns - points).max()
+        if away <= _PARALLEL * size + rounding:
+            text = f"all lie on a rotation about [{pole.real:.6g}, {pole.imag:.6g}]: a fixed pin "
+            text += "there carries the body, and no linkage is determined"
+            task.refuse([(("positions",), text)])
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -110,31 +109,33 @@ class _Family:
     """Dyads, of which the first ``leading`` are the cranks if that is not 0."""
 
     dyads: DyadSet
-    message: str
+    message: str = ""
     leading: int = 0
     timed: bool = False
 
 
-def _pairs(
-    task: Task, dyads: DyadSet, poses: PoseSet, leading: int = 0
-) -> tuple[list[Candidates], str]:
+def _pairs(task: Task, family: _Family, poses: PoseSet) -> tuple[list[Candidates], str]:
     """The mechanisms of the kinds that the task names, and a note on pairs that make none."""
-    made, note = pair_dyads(dyads, poses, leading), ""
+    made, note = pair_dyads(family.dyads, poses, family.leading), ""
     guides_requested = any(name in GUIDED for name in task.mechanisms)
-    if guides_requested and leading:
+    if guides_requested and family.leading:
         note = "; given pivots and timing are those of cranks: no mechanisms of two guides are made"
     elif guides_requested:
-        guided, immobile = pair_guides(dyads, poses)
+        guided, immobile = pair_guides(family.dyads, poses)
         made += guided
         if immobile:
             note = f"; {immobile} pairs of guides are parallel or share a pivot: no such mechanism"
     return [part for part in made if part.kind.value in task.mechanisms], note
 
 
+def _poses(points: ComplexArray, angles: Array) -> PoseSet:
+    return PoseSet(points=points[None], turns=np.exp(1j * angles)[None])
+
+
 def _through_few(task: Task, wishes: Wishes, points: ComplexArray, angles: Array) -> SolvedTask:
     """A sample of the family through the poses, and with tolerances through poses near them."""
     first = _family(task, wishes, points, angles)
-    pairs, note = _paired(task, first, points, angles)
+    pairs, note = _pairs(task, first, _poses(points, angles))
     if is_tolerant(task):
         near = _near_pairs(task, wishes, points, angles)
         every = [pairs, *islice(near, max(0, _MOST_DESIGNS // max(1, sum(map(len, pairs))) - 1))]
@@ -160,14 +161,6 @@ def _through_few(task: Task, wishes: Wishes, points: ComplexArray, angles: Array
     )
 
 
-def _paired(
-    task: Task, family: _Family, points: ComplexArray, angles: Array
-) -> tuple[list[Candidates], str]:
-    """The mechanisms of a family through poses, and a note on pairs that make none."""
-    poses = PoseSet(points=points[None], turns=np.exp(1j * angles)[None])
-    return _pairs(task, family.dyads, poses, family.leading)
-
-
 def _near_pairs(
     task: Task, wishes: Wishes, points: ComplexArray, angles: Array
 ) -> Iterator[list[Candidates]]:
@@ -175,7 +168,7 @@ def _near_pairs(
     shift, turn = drawn_within(task, _TASKS)
     for near, turned in zip(points + shift[1:], angles + turn[1:], strict=True):
         with suppress(MechanismError):  # given pivots may be off the curves of the near poses
-            yield _paired(task, _family(task, wishes, near, turned), near, turned)[0]
+            yield _pairs(task, _family(task, wishes, near, turned), _poses(near, turned))[0]
 
 
 def _through_five(task: Task, points: ComplexArray, angles: Array) -> SolvedTask:
@@ -183,11 +176,8 @@ def _through_five(task: Task, points: ComplexArray, angles: Array) -> SolvedTask
     solved = solve_five_poses(tasks.points, tasks.angles)
     chosen = PoseSet(points=tasks.points, turns=np.exp(1j * tasks.angles))
     dyads = DyadSet.of_solutions(solved, chosen)
-    made = []
-    pairs, note = _pairs(task, dyads, chosen)
-    for part in pairs:
-        kept = with_misses(task, points, angles, part)
-        made += [] if kept is None else [kept]
+    pairs, note = _pairs(task, _Family(dyads=dyads), chosen)
+    near = (with_misses(task, points, angles, part) for part in pairs)
     of_task = dyads.take(dyads.task == 0)
     first = solved.refusal[0]
     if (first == Refusal.FAMILY.code).all():
@@ -201,7 +191,7 @@ def _through_five(task: Task, points: ComplexArray, angles: Array) -> SolvedTask
     else:
         grade, message = Completeness.NOT_PROVED, Refusal.COINCIDENT.value
     return SolvedTask(
-        candidates=tuple(made),
+        candidates=tuple(part for part in near if part is not None),
         complex=solved.x.shape[1],
         real=len(of_task),
         proved=int((of_task.refusal == Refusal.NONE.code).sum()),
@@ -282,7 +272,7 @@ def _through_four(
         dyads=DyadSet.joined(through if number > 1 else [*through, *free]),
         leading=sum(map(len, through)) if number == 1 else 0,
         message=f"a sample of dyads along the centre-point curve: {len(arcs)} {proved} "
-        f"arc{'' if len(arcs) == 1 else 's'}{_moved(fixed, moving, through, points)}",
+        f"arc{'' if len(arcs) == 1 else 's'}",
     )
 
 
@@ -296,24 +286,8 @@ def _determined(
         return dyads
     unmatched = [k for k, p in enumerate(pivots) if not (np.abs(dyads.fixed - p) < reach).any()]
     message = "determines no dyad: the body turns about it from one pose to another"
-    raise _refused(task, "given", message, key, unmatched[0] if unmatched else 0)
-
-
-def _moved(
-    fixed: ComplexArray, moving: ComplexArray, sets: Sequence[DyadSet], points: ComplexArray
-) -> str:
-    """A note how far the given pivots were moved onto their curves."""
-    pivots = [(x, name) for x, name in ((fixed, "fixed"), (moving, "moving")) if len(x)]
-    away = max(
-        (
-            float(np.abs(getattr(dyads, name) - x).max())
-            for (x, name), dyads in zip(pivots, sets, strict=True)
-        ),
-        default=0.0,
-    )
-    if away <= _EXACT * float(np.abs(points - points.mean()).max()):
-        return ""
-    return f"; given pivots are moved by up to {away:.2g} onto their curve"
+    task.refuse([(("given", key, unmatched[0] if unmatched else 0), message)])
+    return dyads
 
 
 def _check_on_curve(
@@ -332,7 +306,8 @@ def _check_on_curve(
     name = "centre-point" if key == "fixed_pivots" else "circle-point"
     if curve is None:
         text = f"are not made for four poses of which three are parallel: the {name} curve is no "
-        raise _refused(task, "given", f"{text}cubic; leave them out", key)
+        task.refuse([(("given", key), f"{text}cubic; leave them out")])
+        return
     for k, pivot in enumerate(pivots):
         near = curve.points(np.angle([pivot - curve.pole]))[0]
         if (np.abs(near - pivot) < _ON_CURVE * size).any():
@@ -341,8 +316,4 @@ def _check_on_curve(
         sampled = np.concatenate([near, sampled.ravel()])
         best = origin + turn * sampled[np.nanargmin(np.abs(sampled - pivot))]
         text = f"is not on the {name} curve of the four poses; the nearest point of it is about "
-        raise _refused(task, "given", f"{text}[{best.real:.6g}, {best.imag:.6g}]", key, k)
-
-
-def _refused(task: Task, table: str, message: str, *key: str | int) -> MechanismError:
-    return MechanismError([Problem(key=(table, *key), message=message)], f'task "{task.name}"')
+        task.refuse([(("given", key, k), f"{text}[{best.real:.6g}, {best.imag:.6g}]")])

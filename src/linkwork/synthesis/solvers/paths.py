@@ -11,6 +11,7 @@ import numpy as np
 
 from linkwork.core.foundation.arrays import ComplexArray
 from linkwork.core.foundation.statuses import Completeness
+from linkwork.synthesis.lane_problems import part_of
 from linkwork.synthesis.loops.candidates import Candidates, LoopKind
 from linkwork.synthesis.poses.pose_families import drawn_within, is_tolerant
 from linkwork.synthesis.precision.four_bar_positions import FourBarPositions
@@ -155,17 +156,9 @@ class _SharedProgress:
 
     def part(self, left: int) -> Callable[[float], None] | None:
         """The progress function of the first of ``left`` equal parts; earlier parts are done."""
-        if self._progress is None:
-            return None
-        begin = self._done
-        share = (1.0 - begin) / left
+        begin, share = self._done, (1.0 - self._done) / left
         self._done += share
-
-        def tell(fraction: float) -> None:
-            assert self._progress is not None
-            self._progress(begin + share * fraction)
-
-        return tell
+        return part_of(self._progress, begin, share)
 
 
 def _near(
@@ -219,7 +212,6 @@ def _candidates(points: ComplexArray, solved: Sequence[FourBarPositions]) -> tup
             kind=LoopKind.FOUR_BAR,
             fixed_a=four_bars.fixed_a,
             fixed_b=four_bars.fixed_b,
-            direction=np.zeros(len(four_bars), dtype=complex),
             moving_a=four_bars.moving_a,
             moving_b=four_bars.moving_b,
             guided=four_bars.guided,

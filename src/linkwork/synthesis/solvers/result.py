@@ -31,28 +31,19 @@ from linkwork.synthesis.tasks.conditions import Wishes
 from linkwork.synthesis.tasks.task import Task
 
 _NONE = Wishes()
-#: Defects that are wishes of the task, not properties of its positions: their words, and the wishes
-#: without them.
-_WISHES: dict[DefectKind, tuple[str, Callable[[Wishes], Wishes]]] = {
-    DefectKind.ORDER: ("the order as given", lambda wishes: replace(wishes, ordered=False)),
-    DefectKind.RANGE: ("the driven range", lambda wishes: replace(wishes, range=None)),
-    DefectKind.TRANSMISSION: (
-        "the least transmission angle",
-        lambda wishes: replace(wishes, transmission=0.0),
-    ),
-    DefectKind.PIVOTS: (
-        "the region of fixed pivots",
-        lambda wishes: replace(wishes, region=_NONE.region),
-    ),
+#: Defects that are wishes of the task, not properties of its positions: their words, and what the
+#: wishes are without them.
+_WISHES: dict[DefectKind, tuple[str, dict[str, Any]]] = {
+    DefectKind.ORDER: ("the order as given", {"ordered": False}),
+    DefectKind.RANGE: ("the driven range", {"range": None}),
+    DefectKind.TRANSMISSION: ("the least transmission angle", {"transmission": 0.0}),
+    DefectKind.PIVOTS: ("the region of fixed pivots", {"region": _NONE.region}),
     DefectKind.LENGTHS: (
         "the bounds of lengths",
-        lambda wishes: replace(wishes, shortest=0.0, longest=np.inf, ratio=np.inf),
+        {"shortest": 0.0, "longest": np.inf, "ratio": np.inf},
     ),
-    DefectKind.TOLERANCE: (
-        "the tolerances",
-        lambda wishes: replace(wishes, points=_NONE.points, reach=_NONE.reach),
-    ),
-    DefectKind.OBSTACLE: ("clear_of", lambda wishes: replace(wishes, obstacles=_NONE.obstacles)),
+    DefectKind.TOLERANCE: ("the tolerances", {"points": _NONE.points, "reach": _NONE.reach}),
+    DefectKind.OBSTACLE: ("clear_of", {"obstacles": _NONE.obstacles}),
 }
 _COUNTS = ("complex", "real", "proved", "triples", "linkages", "starts", "interrupted")
 _MOST_JUDGED = 3  # sets of requirements that are left out to count the designs that they reject
@@ -100,33 +91,21 @@ class Dyad:
         return {k: list(v) if isinstance(v, tuple) else v for k, v in vars(self).items()}
 
 
-@dataclass(frozen=True, kw_only=True, eq=False)
-class JudgedDesigns:
-    """Designs of one kind with one driven link, and the verdicts on them.
-
-    ``zero``, one of ``zeros``, and ``output`` are those of :class:`SolvedTask`.
-    """
-
-    task: Task
-    candidates: Candidates
-    drive: Drive
-    wishes: Wishes
-    verdicts: Verdicts
-    zero: tuple[float, float] | None
-    output: str
-
-
-@internal("group", "index", "drive", "design")
+@internal("group", "index", "zero", "output", "drive", "design")
 @dataclass(frozen=True, kw_only=True, eq=False, repr=False)
 class SynthesizedDesign(JudgedDesign):
     """One design of a loop with its verdict.
 
     Parameters
     ----------
-    group : JudgedDesigns
-        The designs of its kind.
+    group : Verdicts
+        Those on the designs of its kind.
     index : int
         Its place among them.
+    zero : (float, float), optional
+        One of ``zeros`` of :class:`SolvedTask`.
+    output : str
+        That of :class:`SolvedTask`.
 
     Examples
     --------
@@ -137,23 +116,15 @@ class SynthesizedDesign(JudgedDesign):
     (1, ())
     """
 
-    group: JudgedDesigns
+    group: Verdicts
     index: int
+    zero: tuple[float, float] | None
+    output: str
 
     @property
     def drive(self) -> Drive:
         """The driven link."""
         return self.group.drive
-
-    @property
-    def driven(self) -> str:
-        """The driven link in words."""
-        return self.drive.value
-
-    @property
-    def mechanism(self) -> str:
-        """The kind of mechanism."""
-        return self.group.candidates.kind.value
 
     @property
     def points(self) -> dict[str, complex]:
@@ -163,59 +134,46 @@ class SynthesizedDesign(JudgedDesign):
     @cached_property
     def kinds(self) -> tuple[DefectKind, ...]:
         """The kinds of its defects; none for a sound design."""
-        defects = self.group.verdicts.defects
-        return tuple(kind for kind, wrong in defects.items() if wrong[self.index])
+        return tuple(kind for kind, wrong in self.group.defects.items() if wrong[self.index])
 
     @cached_property
     def defects(self) -> tuple[Defect, ...]:
         """Its defects in words; none for a sound design."""
-        group = self.group
-        return defects_of(group.task, group.candidates, group.drive, group.verdicts, self.index)
+        return defects_of(self.task, self.group, self.index)
 
     @property
     def transmission(self) -> float:
         """A lower bound of the transmission angle over the driven range, NaN where that is not
         defined [file's angle unit].
         """
-        least = float(self.group.verdicts.transmission[self.index])
-        return self.group.task.angle.from_radians(least)
+        return self.task.angle.from_radians(float(self.group.transmission[self.index]))
 
     @property
     def size(self) -> float:
         """The longest link, or the distance of the fixed pivots [length]."""
-        return float(self.group.verdicts.size[self.index])
+        return float(self.group.size[self.index])
 
     @property
     def shortest(self) -> float:
         """The shortest link, or the distance of the fixed pivots [length]."""
-        return float(self.group.verdicts.shortest[self.index])
+        return float(self.group.shortest[self.index])
 
     @property
     def error(self) -> float:
         """How far positions are missed, the largest distance, or the structural error."""
         miss = float(self.group.candidates.miss[self.index])
-        return self.group.task.angle.from_radians(miss) if self._is_rocker else miss
-
-    @property
-    def _is_rocker(self) -> bool:
-        return self.group.output == "rocker"
-
-    @property
-    def error_unit(self) -> str:
-        """The unit of the error."""
-        task = self.group.task
-        return task.angle.value if self._is_rocker else task.length
+        return self.task.angle.from_radians(miss) if self.output == "rocker" else miss
 
     @cached_property
     def design(self) -> Design:
         """Its points at the first position, and its driven range."""
         group, k = self.group, self.index
-        travel, loops = group.verdicts.travel, group.verdicts.loops
+        travel, loops = group.travel, group.loops
         inputs = loops.input[k] if self.kinds else travel.place[k] + loops.origin[k]
         ends = inputs[[0, -1]]
         if not self.kinds:
             ends = np.array([travel.first[k], travel.last[k]]) + loops.origin[k]
-        return Design.of(group.candidates, k, group.drive, inputs, ends, group.zero)
+        return Design.of(group.candidates, k, group.drive, inputs, ends, self.zero)
 
     @property
     def inputs(self) -> tuple[float, ...]:
@@ -226,51 +184,61 @@ class SynthesizedDesign(JudgedDesign):
     @cached_property
     def linkage(self) -> Linkage:
         """The mechanism, with the name of its design."""
-        return linkage_of(self.design, self.task, self._name, self.group.output)
+        return linkage_of(self.design, self.task, self._name, self.output)
+
+
+@dataclass(frozen=True, kw_only=True, eq=False, repr=False)
+class Solutions:
+    """How many solutions a task has, and whether these are all.
+
+    Parameters
+    ----------
+    complex, real, proved : int
+        Solutions of the equations, those that are real, and those that are proved.
+    triples : int
+        Triples of cognates, for tasks whose solutions are counted so.
+    completeness : Completeness
+        Whether the real solutions are all there are.
+    message : str
+        The same in words of the task.
+    starts : int
+        Starts of a least-squares fit; 0 where equations are solved.
+    interrupted : bool
+        Whether the user stopped it; the designs are the best so far.
+    """
+
+    complex: int
+    real: int
+    proved: int
+    completeness: Completeness
+    message: str
+    triples: int = 0
+    starts: int = 0
+    interrupted: bool = False
 
 
 @internal("helpful_change", "what_helps")
 @dataclass(frozen=True, kw_only=True, eq=False, repr=False)
-class Synthesis:
+class Synthesis(Solutions):
     """All designs for a task, sound ones first.
 
     Parameters
     ----------
     task : Task
-    complex, real, proved : int
-        Solutions of the equations, those that are real, and those that are proved.
-    triples : int
-        Triples of cognates, for tasks whose solutions are counted so.
     linkages : int
         Mechanisms from the real solutions; each may be driven in several ways.
-    completeness : Completeness
-        Whether the real solutions are all there are.
-    message : str
-        The same in words of the task.
     dyads : tuple of Dyad
     designs : tuple of JudgedDesign
         Every mechanism with every driven link, each a SynthesizedDesign: sound ones by score, then
         refused ones. Of ``task = "improve"`` and of six-bars each is a SweptDesign.
-    starts : int
-        Starts of a least-squares fit; 0 where equations are solved.
-    interrupted : bool
-        Whether the user stopped it; the designs are the best so far.
     what_helps : callable
         Tries other tasks and says which of them has sound designs; "" if none has.
     """
 
     task: Task
-    complex: int
-    real: int
-    proved: int
-    triples: int
     linkages: int
-    completeness: Completeness
-    message: str
     dyads: tuple[Dyad, ...]
     designs: tuple[JudgedDesign, ...]
-    starts: int = 0
-    interrupted: bool = False
     what_helps: Callable[[], str] = str
 
     @cached_property
@@ -339,7 +307,7 @@ class Synthesis:
             index = np.array([design.index for design in loops if design.group is group])
             without = group.wishes
             for kind in kinds:
-                without = _WISHES[kind][1](without)
+                without = replace(without, **_WISHES[kind][1])
             count += int(judge(group.candidates.take(index), group.drive, without).sound.sum())
         return count
 
@@ -391,23 +359,15 @@ class Synthesis:
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
-class SolvedTask:
+class SolvedTask(Solutions):
     """The designs that solve a task, before their defects are known.
 
     Parameters
     ----------
     candidates : tuple of Candidates
         Designs, one container for each kind; their positions are those of the task.
-    complex, real, proved : int
-        Solutions of the equations, those that are real, and those that are proved.
-    completeness : Completeness
-        Whether the real solutions are all there are.
-    message : str
-        The same in words of the task.
     dyads : DyadSet, optional
         The real dyads, if the solver combines dyads.
-    triples : int
-        Triples of cognates, for tasks whose solutions are counted so.
     drives : tuple of Drive
         The links that may be driven.
     zeros : tuple of (float, float)
@@ -416,25 +376,13 @@ class SolvedTask:
         measured from its moving pivot.
     output : str
         The name of the output link or slider of a function; "" for other tasks.
-    starts : int
-        Starts of a least-squares fit; 0 where equations are solved.
-    interrupted : bool
-        Whether the user stopped it; the designs are the best so far.
     """
 
-    candidates: tuple[Candidates, ...]
-    complex: int
-    real: int
-    proved: int
-    completeness: Completeness
-    message: str
+    candidates: tuple[Candidates, ...] = ()
     dyads: DyadSet | None = None
-    triples: int = 0
     drives: tuple[Drive, ...] = tuple(Drive)
     zeros: tuple[tuple[float, float], ...] = ()
     output: str = ""
-    starts: int = 0
-    interrupted: bool = False
 
 
 # ----------------------------------------------------------------------

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Iterator, Sequence
-from dataclasses import replace
+from dataclasses import fields, replace
 from functools import partial
 from itertools import zip_longest
 from typing import NamedTuple, TypeVar
@@ -17,7 +17,7 @@ from linkwork.core.foundation.rounding import EQUAL_ROWS
 from linkwork.core.foundation.statuses import Completeness
 from linkwork.core.foundation.values import check_flags
 from linkwork.core.results.listing.motion_listing import rounded_down
-from linkwork.synthesis.defects.verdicts import DefectKind, JudgedDesign, judge
+from linkwork.synthesis.defects.verdicts import DefectKind, JudgedDesign, Verdicts, judge
 from linkwork.synthesis.improvement.settings import FITS, Improvement
 from linkwork.synthesis.loops.candidates import Candidates, Drive
 from linkwork.synthesis.loops.driven_loop import Range
@@ -34,7 +34,7 @@ from linkwork.synthesis.solvers.motions import solve_motion
 from linkwork.synthesis.solvers.paths import solve_path
 from linkwork.synthesis.solvers.result import (
     Dyad,
-    JudgedDesigns,
+    Solutions,
     SolvedTask,
     Synthesis,
     SynthesizedDesign,
@@ -189,27 +189,28 @@ def advice_of(synthesis: Synthesis) -> str:
     if synthesis.most_restrictive is not None:
         return _attained(synthesis)
     if synthesis.task.kind == "improve":
-        if not synthesis.designs:
-            return _of_goals(synthesis)
-        unmoved = [one for one in synthesis.designs if one.kinds == (DefectKind.UNMOVED,)]
-        if unmoved:
-            return (
-                f"{unmoved[0].defects[0].message[:1].upper()}{unmoved[0].defects[0].message[1:]}."
-            )
-        settings = synthesis.task.improvement
-        wider = ", wider bounds" if settings is not None and settings.bounds else ""
-        text = (
-            f"The driven range is the table of {synthesis.task.mechanisms[0]}. Try more "
-            f"starts{wider}, targets nearer to its present values, or a part of the range: "
-            "[wanted] input = { from = …, to = … }."
-        )
-        return text if DefectKind.RANGE in synthesis.defects else ""
+        return _of_improvement(synthesis) if synthesis.designs else _of_goals(synthesis)
     if synthesis.designs and not synthesis.defects.keys() & {*_MOVING}:
         return ""
-    first, *others = _changes(synthesis)
-    steps = first + "".join(f", or {other}" for other in others)
     blame = "No requirement alone is to blame. " if synthesis.designs else ""
-    return f"{blame}Try to {steps}."
+    return f"{blame}Try to {', or '.join(_changes(synthesis))}."
+
+
+def _of_improvement(synthesis: Synthesis) -> str:
+    """Why nothing was improved, or what may give a sound design in the driven range."""
+    settings = synthesis.task.improvement
+    for design in synthesis.designs:
+        if design.kinds == (DefectKind.UNMOVED,):
+            reason = design.defects[0].message
+            return f"{reason[:1].upper()}{reason[1:]}."
+    if DefectKind.RANGE not in synthesis.defects:
+        return ""
+    wider = ", wider bounds" if settings is not None and settings.bounds else ""
+    return (
+        f"The driven range is the table of {synthesis.task.mechanisms[0]}. Try more "
+        f"starts{wider}, targets nearer to its present values, or a part of the range: "
+        "[wanted] input = { from = …, to = … }."
+    )
 
 
 def near_misses(synthesis: Synthesis) -> list[int]:
@@ -241,24 +242,22 @@ def _of_goals(synthesis: Synthesis) -> str:
     return f"{why} linkwork sweep {name} --columns shows the values of {shown}."
 
 
-def _changes(synthesis: Synthesis) -> Iterator[str]:
+def _changes(synthesis: Synthesis) -> list[str]:
     """Changes of a task that give further designs, the smallest first."""
-    task = synthesis.task
+    task, given = synthesis.task, synthesis.task.given
     if task.function is not None:
-        yield "change the ranges of input and output"
-        return
-    if task.kind == "motion" and not {*MECHANISMS} <= {*task.mechanisms}:
-        other = next(name for name in MECHANISMS if name not in task.mechanisms)
-        yield f'allow other kinds of mechanism, such as "{other}"'
-    if task.wanted.region:
-        yield "enlarge the region of fixed pivots"
-    if task.given.fixed_pivots or task.given.moving_pivots or task.given.lengths:
-        yield "give fewer pivots and lengths"
-    if synthesis.starts:
-        yield "search from more starts"
-    elif not any(position.tolerance for position in task.positions):
-        yield "give positions a tolerance"
-    yield "move a position or leave it out"
+        return ["change the ranges of input and output"]
+    others = [name for name in MECHANISMS if name not in task.mechanisms and task.kind == "motion"]
+    tolerant = any(position.tolerance for position in task.positions)
+    changes = {
+        f'allow other kinds of mechanism, such as "{"".join(others[:1])}"': others,
+        "enlarge the region of fixed pivots": task.wanted.region,
+        "give fewer pivots and lengths": given.fixed_pivots or given.moving_pivots or given.lengths,
+        "search from more starts": synthesis.starts,
+        "give positions a tolerance": not (synthesis.starts or tolerant),
+        "move a position or leave it out": True,
+    }
+    return [change for change, helps in changes.items() if helps]
 
 
 # ----------------------------------------------------------------------
@@ -306,22 +305,15 @@ def _of_loops(task: Task, progress: Callable[[float], None] | None = None) -> Sy
     """Designs of one loop."""
     solved = SOLVERS[task.kind](task, wishes_of(task, Drive.A0), progress)
     judged = [
-        JudgedDesigns(
-            task=task,
-            candidates=part,
-            drive=drive,
-            wishes=(wishes := _measured(wishes_of(task, drive), part, zero)),
-            verdicts=judge(part, drive, wishes),
-            zero=zero,
-            output=solved.output,
-        )
+        (judge(part, drive, _measured(wishes_of(task, drive), part, zero)), zero)
         for part, zero in zip_longest(solved.candidates, solved.zeros)
         for drive in part.drives
         if drive in solved.drives
     ]
     if task.function is not None:
         solved = replace(solved, message=solved.message + task.function.note)
-    return _synthesis(task, solved, _ranked_loops(task, judged), sum(map(len, solved.candidates)))
+    designs = _ranked_loops(task, judged, solved.output)
+    return _synthesis(task, solved, designs, sum(map(len, solved.candidates)))
 
 
 def _synthesis(
@@ -329,45 +321,34 @@ def _synthesis(
 ) -> Synthesis:
     return Synthesis(
         task=task,
-        complex=solved.complex,
-        real=solved.real,
-        proved=solved.proved,
-        triples=solved.triples,
         linkages=linkages,
-        completeness=solved.completeness,
-        message=solved.message,
         dyads=() if solved.dyads is None else tuple(_dyads(solved)),
         designs=tuple(designs),
-        starts=solved.starts,
-        interrupted=solved.interrupted,
+        **{field.name: getattr(solved, field.name) for field in fields(Solutions)},
     )
 
 
 def _what_helps(task: Task) -> str:
     """The first change of a task of a function with sound designs, and their number."""
-    for change, goal in _other_goals(task):
+    goal = task.function
+    if goal is None:
+        return ""
+    changes: dict[str, FunctionGoal] = {}
+    if goal.starts_fixed:
+        free = goal.freed
+        spans = [f"{name} = {getattr(free, name)[1]:g}" for name in free.free]
+        change = "leave out input and output" if goal.pairs else " and ".join(spans)
+        changes[f"With free start angles ({change})"] = free
+    changes |= {f'With fit = "{fit}"': replace(goal, fit=fit) for fit in FITS if fit != goal.fit}
+    for change, other in changes.items():
         try:
-            count = _of_loops(replace(task, function=goal)).sound
+            count = _of_loops(replace(task, function=other)).sound
         except MechanismError:  # more pairs than free start angles meet
             continue
         if count:
             designs = "is 1 design" if count == 1 else f"are {count} designs"
             return f"{change} there {designs} without defects."
     return ""
-
-
-def _other_goals(task: Task) -> Iterator[tuple[str, FunctionGoal]]:
-    goal = task.function
-    if goal is None:
-        return
-    if goal.starts_fixed:
-        free = goal.freed
-        spans = [f"{name} = {getattr(free, name)[1]:g}" for name in free.free]
-        change = "leave out input and output" if goal.pairs else " and ".join(spans)
-        yield f"With free start angles ({change})", free
-    for fit in FITS:
-        if fit != goal.fit:
-            yield f'With fit = "{fit}"', replace(goal, fit=fit)
 
 
 def _measured(wishes: Wishes, part: Candidates, zero: tuple[float, float] | None) -> Wishes:
@@ -394,24 +375,21 @@ def _sound_designs(task: Task) -> Callable[[Candidates], int]:
 def _improved(task: Task, progress: Callable[[float], None] | None) -> Synthesis:
     """Improved designs, sound ones by falling score."""
     designs, starts, interrupted = improve_mechanism(task, wishes_of(task, Drive.A0), progress)
-    front = (task.improvement or Improvement()).front
+    settings = task.improvement or Improvement()
+    rank = partial(_ranked_alone, task, designs, in_order=bool(settings.front))
     try:
-        ranked = _ranked_alone(task, designs, in_order=bool(front))
+        ranked = rank()
     except KeyboardInterrupt:
         # verdicts so far are kept; a further interruption ends the rest
-        interrupted, ranked = True, _ranked_alone(task, designs, in_order=bool(front))
-    seed = (task.improvement or Improvement()).seed
-    kind = (
-        "a front of designs, each the best one in some goal or trade-off,"
-        if front
-        else "different fits"
-    )
-    message = f"a sample: {kind} from {starts} starts with seed {seed}"
+        interrupted, ranked = True, rank()
+    kind = "different fits"
+    if settings.front:
+        kind = "a front of designs, each the best one in some goal or trade-off,"
+    message = f"a sample: {kind} from {starts} starts with seed {settings.seed}"
     message += _of_motion(task, ranked)
     message += "" if task.curve is None else task.curve.note
     count = len(designs)
     solved = SolvedTask(
-        candidates=(),
         complex=count,
         real=count,
         proved=sum(design.improved.sound for design in designs),
@@ -541,18 +519,28 @@ def _beyond(task: Task) -> float:
     return task.in_radians(float(abs(goal.points()[0][0] - goal.input[0])))
 
 
-def _ranked_loops(task: Task, judged: list[JudgedDesigns]) -> tuple[SynthesizedDesign, ...]:
+def _ranked_loops(
+    task: Task, judged: Sequence[tuple[Verdicts, tuple[float, float] | None]], output: str
+) -> tuple[SynthesizedDesign, ...]:
     """Designs of loops, which were judged together."""
     designs = [
-        SynthesizedDesign(task=task, group=part, index=k)
-        for part in judged
+        SynthesizedDesign(
+            task=task,
+            mechanism=part.candidates.kind.value,
+            driven=part.drive.value,
+            error_unit=task.angle.value if output == "rocker" else task.length,
+            group=part,
+            index=k,
+            zero=zero,
+            output=output,
+        )
+        for part, zero in judged
         for k in range(len(part.candidates))
     ]
     scores = [
-        _scores(task, part.verdicts.transmission, part.verdicts.size, part.candidates.miss)
-        for part in judged
+        _scores(task, part.transmission, part.size, part.candidates.miss) for part, _ in judged
     ]
-    refused = [bool(wrong) for part in judged for wrong in ~part.verdicts.sound]
+    refused = [bool(wrong) for part, _ in judged for wrong in ~part.sound]
     return _ranked(task, designs, refused, np.concatenate([np.zeros(0), *scores]))
 
 

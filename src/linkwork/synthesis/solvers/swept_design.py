@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace
 from functools import cached_property
 from itertools import combinations, islice
@@ -20,9 +20,16 @@ from linkwork.core.mechanism.linkage import Draft
 from linkwork.core.results.limit import LimitKind
 from linkwork.core.results.motion import Motion, branch_end
 from linkwork.core.results.quantities.rows import TRANSMISSION_ANGLE
-from linkwork.synthesis.defects.verdicts import Defect, DefectKind, JudgedDesign, tolerance_message
+from linkwork.synthesis.defects.verdicts import (
+    Defect,
+    DefectKind,
+    JudgedDesign,
+    lengths_message,
+    order_message,
+    tolerance_message,
+)
 from linkwork.synthesis.improvement.proved_design import ImprovedDesign
-from linkwork.synthesis.improvement.settings import least_in_rows
+from linkwork.synthesis.improvement.whole_motion import least_in_rows
 from linkwork.synthesis.tasks.conditions import (
     EQUAL_LENGTHS,
     Wishes,
@@ -32,17 +39,21 @@ from linkwork.synthesis.tasks.conditions import (
 from linkwork.synthesis.tasks.task import Task
 
 
-@internal("swept", "description", "improved")
+@internal("improved", "wishes", "place", "changed", "of")
 @dataclass(frozen=True, kw_only=True, eq=False, repr=False)
 class SweptDesign(JudgedDesign):
     """A mechanism of any kind that is judged by a sweep, with its defects.
 
     Parameters
     ----------
-    swept : callable
-        The design with its proof, made at first use.
+    improved : ImprovedDesign
+        The design with its proof.
     wishes : Wishes
         The requirements of the task, in radians.
+    place : Mapping[str, complex], optional
+        The points at the first position; by default in the first row that has one [length].
+    changed : Defect, optional
+        A change of circuit or branch that is known before the sweep, or that this is not decided.
 
     Examples
     --------
@@ -53,32 +64,23 @@ class SweptDesign(JudgedDesign):
     [{'O2 A': 34.46567317588864}]
     """
 
-    swept: Callable[[], ImprovedDesign]
+    improved: ImprovedDesign
     wishes: Wishes
+    place: Mapping[str, complex] | None = None
+    changed: Defect | None = None
 
-    @property
-    def improved(self) -> ImprovedDesign:
-        """The design with its proof."""
-        return self.swept()
-
-    @property
-    def description(self) -> Description:
-        """The mechanism, with the name of the one that was improved."""
-        return self.improved.description
-
-    @property
-    def mechanism(self) -> str:
-        """The mechanism that was improved, as the task names it."""
-        return self.task.mechanisms[0]
-
-    @property
-    def driven(self) -> str:
-        """The leading input."""
-        return self._lead
-
-    @property
-    def _lead(self) -> str:
-        return next(iter(self._motion.inputs)) if self._motion is not None else ""
+    @classmethod
+    def of(cls, task: Task, improved: ImprovedDesign, wishes: Wishes) -> SweptDesign:
+        """A design of a task that improves a mechanism."""
+        motion = improved.motion
+        return cls(
+            task=task,
+            mechanism=task.mechanisms[0],
+            driven="" if motion is None else motion.quantities.names.lead,
+            error_unit=task.length if improved.misses else "",
+            improved=improved,
+            wishes=wishes,
+        )
 
     @property
     def numbers(self) -> dict[str, float]:
@@ -104,7 +106,9 @@ class SweptDesign(JudgedDesign):
 
     @property
     def points(self) -> dict[str, complex]:
-        """The points in the first row that has a position [length]."""
+        """The points at the first position, or in the first row that has one [length]."""
+        if self.place is not None:
+            return dict(self.place)
         return {name: complex(path[0]) for name, path in self._moving_points.items() if len(path)}
 
     @property
@@ -120,12 +124,12 @@ class SweptDesign(JudgedDesign):
         motion = self._motion
         if motion is None or not motion.found.any():
             return float("nan")
-        return float(motion.inputs[self._lead][motion.found][0])
+        return float(motion.inputs[motion.quantities.names.lead][motion.found][0])
 
     @cached_property
     def linkage(self) -> Description:
         """The mechanism, with the name of its design."""
-        return replace(self.description, name=self._name)
+        return replace(self.improved.description, name=self._name)
 
     # Measures
 
@@ -141,27 +145,47 @@ class SweptDesign(JudgedDesign):
         return float("nan") if motion is None else least_in_rows(motion)
 
     @cached_property
+    def _links(self) -> dict[str, tuple[str, ...]]:
+        """The points of the links, of the ground those of moving links."""
+        description = self.improved.description
+        links = dict(description.links) if isinstance(description, Draft) else {}
+        fixed = links.pop(GROUND, ())
+        moving = {name for held in links.values() for name in held}
+        return {**links, GROUND: tuple(name for name in fixed if name in moving)}
+
+    @property
+    def _sides(self) -> list[tuple[str, tuple[str, str]]]:
+        """The lines between two points of every moving link."""
+        return [
+            (name, ends)
+            for name, held in self._links.items()
+            for ends in combinations(held, 2)
+            if name != GROUND
+        ]
+
+    @property
+    def _pivots(self) -> dict[str, complex]:
+        """The fixed points of moving links."""
+        return {name: self.points[name] for name in self._links[GROUND]}
+
+    @cached_property
     def _lengths(self) -> Array:
         """The lengths of links, and the distances of fixed pivots [length]."""
-        description, points = self.description, self.points
-        if not isinstance(description, Draft) or not points:
-            return np.zeros(0)
-        moving = {p for name, ends in description.links.items() if name != GROUND for p in ends}
-        lengths = []
-        for name, ends in description.links.items():
-            held = [p for p in ends if name != GROUND or p in moving]
-            lengths += [abs(points[p] - points[q]) for p, q in combinations(held, 2)]
-        return np.array([length for length in lengths if length > 0.0])
+        points = self.points
+        held = self._links.values() if points else ()
+        ends = [ends for names in held for ends in combinations(names, 2)]
+        lengths = np.array([abs(points[p] - points[q]) for p, q in ends])
+        return lengths[lengths > 0.0]
 
     @property
     def size(self) -> float:
         """The longest link, or the largest distance of fixed pivots [length]."""
-        return float(self._lengths.max(initial=np.nan if not len(self._lengths) else 0.0))
+        return float(self._lengths.max()) if len(self._lengths) else float("nan")
 
     @property
     def shortest(self) -> float:
         """The shortest link, or distance of fixed pivots [length]."""
-        return float(self._lengths.min(initial=np.inf)) if len(self._lengths) else float("nan")
+        return float(self._lengths.min()) if len(self._lengths) else float("nan")
 
     @property
     def error(self) -> float:
@@ -170,20 +194,21 @@ class SweptDesign(JudgedDesign):
             return float(np.nan_to_num(np.max(self.improved.misses), nan=np.inf))
         return self.improved.largest
 
-    @property
-    def error_unit(self) -> str:
-        """The unit of the error; "" of weighted misses."""
-        return self.task.length if self.improved.misses else ""
-
     # Verdict
 
     @cached_property
     def defects(self) -> tuple[Defect, ...]:
-        """Its defects in words; none for a sound design."""
+        """Its defects in words; none for a sound design.
+
+        A sweep without a dead point, each row proved, passes all positions of a six-bar whose loops
+        are on one side at all of them.
+        """
+        if self.changed is not None:
+            return (self.changed,)
         messages = tuple(self._defect_messages())
         if not messages and not self.improved.sound:
             messages = ((DefectKind.NOT_PROVED, self.improved.message),)
-        return tuple(Defect(kind=kind, between=None, message=message) for kind, message in messages)
+        return tuple(Defect(kind=kind, message=message) for kind, message in messages)
 
     def _defect_messages(self) -> Iterator[tuple[DefectKind, str]]:
         motion, task = self._motion, self.task
@@ -215,9 +240,7 @@ class SweptDesign(JudgedDesign):
         if reach.size and (np.nan_to_num(misses) > reach).any():
             yield DefectKind.TOLERANCE, tolerance_message(misses, reach, task.length)
         if self.wishes.ordered and task.positions and not _is_in_order(self.improved.inputs):
-            order = np.argsort(self.improved.inputs, kind="stable") + 1
-            reason = f"the input passes the positions in the order {', '.join(map(str, order))}"
-            yield DefectKind.ORDER, reason
+            yield DefectKind.ORDER, order_message(self.improved.inputs)
         for reason in self.improved.broken:
             yield DefectKind.BOUND, reason
         yield from self._transmission_defects()
@@ -248,7 +271,7 @@ class SweptDesign(JudgedDesign):
 
     def _out_of_range(self, motion: Motion) -> Iterator[tuple[DefectKind, str]]:
         """The first position outside the driven range."""
-        table = np.asarray(motion.inputs[self._lead])[motion.asked]
+        table = np.asarray(motion.inputs[motion.quantities.names.lead])[motion.asked]
         turn = self.task.angle.turn if motion.derivative_unit == "rad" else math.inf
         for k, at, place in islice(outside_range(self.improved.inputs, table, turn), 1):
             yield DefectKind.RANGE, f"position {k + 1} is passed at {at:.6g}, {place}"
@@ -258,7 +281,7 @@ class SweptDesign(JudgedDesign):
             yield from self._missed_dimensions()
         outside = [
             name
-            for name, place in self._pivots().items()
+            for name, place in self._pivots.items()
             if not self.wishes.within_region(np.array([place]), np.zeros(1))[0]
         ]
         if outside:
@@ -267,8 +290,7 @@ class SweptDesign(JudgedDesign):
         if len(lengths):
             shortest, longest = lengths.min(), lengths.max()
             if not self.wishes.allows(shortest, longest):
-                message = f"lengths from {shortest:.4g} to {longest:.4g} are out of bounds"
-                yield DefectKind.LENGTHS, message
+                yield DefectKind.LENGTHS, lengths_message(shortest, longest)
         yield from self._obstacle_defects()
 
     def _obstacle_defects(self) -> Iterator[tuple[DefectKind, str]]:
@@ -290,20 +312,11 @@ class SweptDesign(JudgedDesign):
             text = "not proved: the links may meet an obstacle between"
             yield DefectKind.NOT_PROVED, f"{text} {first} and {last}"
 
-    @cached_property
-    def _sides(self) -> list[tuple[str, tuple[str, str]]]:
-        """The lines between two points of every moving link."""
-        description = self.description
-        if not isinstance(description, Draft):
-            return []
-        links = {name: held for name, held in description.links.items() if name != GROUND}
-        return [(name, ends) for name, held in links.items() for ends in combinations(held, 2)]
-
     def _missed_dimensions(self) -> Iterator[tuple[DefectKind, str]]:
         """Pivots and lengths that the task gives and the design does not have."""
         given, points, unit = self.task.given, self.points, self.task.length
         near = EQUAL_LENGTHS * self.size
-        pivots = np.array([*self._pivots().values()], dtype=complex)
+        pivots = np.array([*self._pivots.values()], dtype=complex)
         for place in given.fixed_pivots:
             if not np.abs(pivots - complex(*place)).min(initial=np.inf) <= near:
                 yield DefectKind.PIVOTS, f"no fixed pivot at ({place[0]:g}, {place[1]:g}) as given"
@@ -316,13 +329,6 @@ class SweptDesign(JudgedDesign):
             if abs(length - goal) > EQUAL_LENGTHS * goal:
                 message = f'the length "{name}" is {length:.6g} {unit}, given as {goal:g} {unit}'
                 yield DefectKind.LENGTHS, message
-
-    def _pivots(self) -> dict[str, complex]:
-        description = self.description
-        if not isinstance(description, Draft):
-            return {}
-        moving = {p for name, ends in description.links.items() if name != GROUND for p in ends}
-        return {p: self.points[p] for p in description.links.get(GROUND, ()) if p in moving}
 
     def _meets_obstacle(self) -> bool:
         """Whether a side of a link comes nearer to a circle than its ends move between rows."""
@@ -340,22 +346,21 @@ class SweptDesign(JudgedDesign):
         """Wishes that are judged in the whole motion."""
         return () if self.improved.whole_motion is None else wishes_in_motion(self.task)
 
-    @property
-    def tested_in_rows(self) -> tuple[str, ...]:
-        """Wishes that are tested in the rows of the table only."""
-        return () if self.improved.whole_motion is not None else wishes_in_motion(self.task)
-
     def _details(self) -> Mapping[str, Any]:
-        return {
+        improved, proved = self.improved, self.proved_in_motion
+        tested = () if proved or self.changed else wishes_in_motion(self.task)
+        details = {
             "numbers": self.numbers,
             "inputs": list(self.inputs),
-            "proved_in_motion": list(self.proved_in_motion),
-            "tested_in_rows": list(self.tested_in_rows),
+            "proved_in_motion": list(proved),
+            "tested_in_rows": list(tested),
             "goals": self.goals,
-            "misses": list(self.improved.misses),
-            "total": self.improved.total,
-            "message": self.improved.message,
+            "misses": list(improved.misses),
+            "total": improved.total,
+            "message": improved.message,
         }
+        of_all = ("inputs", "proved_in_motion", "tested_in_rows")
+        return details if self.task.kind == "improve" else {key: details[key] for key in of_all}
 
 
 def wishes_in_motion(task: Task) -> tuple[str, ...]:

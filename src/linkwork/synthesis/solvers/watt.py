@@ -3,16 +3,14 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterator, Mapping
-from dataclasses import dataclass
-from functools import cache, cached_property
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from functools import cached_property
 from itertools import combinations
-from typing import Any
 
 import numpy as np
 
 from linkwork.core.foundation.arrays import Array, ComplexArray, IndexArray
-from linkwork.core.foundation.errors import internal
 from linkwork.core.foundation.names import GROUND
 from linkwork.core.foundation.rounding import UNIT_ROUNDOFF
 from linkwork.core.foundation.statuses import Completeness
@@ -20,9 +18,10 @@ from linkwork.core.foundation.units import FULL_TURN
 from linkwork.core.mechanism.inputs import Input
 from linkwork.core.mechanism.linkage import Linkage
 from linkwork.synthesis.defects.verdicts import Defect, DefectKind
-from linkwork.synthesis.improvement.proved_design import proved_design
+from linkwork.synthesis.improvement.proved_design import ImprovedDesign, proved_design
 from linkwork.synthesis.loops.candidates import Candidates, Drive, LoopKind
-from linkwork.synthesis.loops.driven_loop import NOWHERE, Travel, driven_loops, travel_of
+from linkwork.synthesis.loops.driven_loop import NOWHERE, Travel, travel_of
+from linkwork.synthesis.loops.limits import driven_loops
 from linkwork.synthesis.six_bars.watt import PAIRS, WattSixBars, watt_six_bars
 from linkwork.synthesis.solvers.result import SolvedTask
 from linkwork.synthesis.solvers.swept_design import SweptDesign
@@ -75,22 +74,20 @@ class WattGroup:
 
     def defect(self, k: int) -> Defect | None:
         """The circuit or branch defect of a design, or why it is not decided."""
-        travels = dict(zip(("A0 A B B0", "B0 C D C0"), self.travels, strict=True))
-        return next(self._defects(travels, k), None)
-
-    def _defects(self, travels: dict[str, Travel], k: int) -> Iterator[Defect]:
-        decided = {name: travel for name, travel in travels.items() if travel.decided[k]}
-        for kind, word in ((DefectKind.CIRCUIT, "circuit"), (DefectKind.BRANCH, "branch")):
-            for name, travel in decided.items():
+        travels = [*zip(("A0 A B B0", "B0 C D C0"), self.travels, strict=True)]
+        for kind in (DefectKind.CIRCUIT, DefectKind.BRANCH):
+            word = kind.name.lower()
+            for name, travel in travels:
                 after = int(getattr(travel, word)[k]) + 1
-                if after != NOWHERE + 1:
+                if travel.decided[k] and after != NOWHERE + 1:
                     message = f"{word} of the loop {name} changes between positions {after} and"
-                    yield Defect(
-                        kind=kind, between=(after, after + 1), message=f"{message} {after + 1}"
-                    )
-        for name in travels.keys() - decided.keys():
-            message = f"not proved: to rounding, the loop {name} is at a dead point or change point"
-            yield Defect(kind=DefectKind.NOT_PROVED, between=None, message=message)
+                    message = f"{message} {after + 1}"
+                    return Defect(kind=kind, between=(after, after + 1), message=message)
+        for name, travel in travels:
+            if not travel.decided[k]:
+                message = f"not proved: to rounding, the loop {name} is at a dead point or change"
+                return Defect(kind=DefectKind.NOT_PROVED, message=f"{message} point")
+        return None
 
 
 def watt_group(task: Task, bars: WattSixBars, kept: IndexArray, zero: Array | None) -> WattGroup:
@@ -123,21 +120,19 @@ def watt_group(task: Task, bars: WattSixBars, kept: IndexArray, zero: Array | No
     size = np.maximum(np.abs(first), np.abs(second))
     far = np.abs(np.stack([origin, centre, last])).max(axis=0)
     error = bars.error * size + _WATT_GROUP_ROUNDING * (far + size * np.abs(bars.arms).max(axis=1))
-    one = _four_bars(
-        (origin, centre),
-        (
-            placed(origin, first, a[:, None] * crank),
-            placed(centre, first, b[:, None] * turns),
-        ),
-        error,
-    )
-    other = _four_bars(
-        (centre, last),
-        (
-            placed(centre, second, c[:, None] * turns),
-            placed(last, second, e[:, None] * rocker),
-        ),
-        error,
+    one, other = (
+        Candidates(
+            kind=LoopKind.FOUR_BAR,
+            fixed_a=fixed_a,
+            fixed_b=fixed_b,
+            moving_a=placed(fixed_a, ground, arm_a),
+            moving_b=placed(fixed_b, ground, arm_b),
+            error=error,
+        )
+        for fixed_a, fixed_b, ground, arm_a, arm_b in (
+            (origin, centre, first, a[:, None] * crank, b[:, None] * turns),
+            (centre, last, second, c[:, None] * turns, e[:, None] * rocker),
+        )
     )
     return WattGroup(task=task, first=one, second=other, inputs=bars.inputs[kept])
 
@@ -163,25 +158,6 @@ def _grounds(
     return (
         np.exp(1j * zero[0]) * np.abs(a) / a,
         ratio * np.exp(1j * zero[1]) * np.abs(e) / e,
-    )
-
-
-def _four_bars(
-    fixed: tuple[ComplexArray, ComplexArray],
-    moving: tuple[ComplexArray, ComplexArray],
-    error: Array,
-) -> Candidates:
-    count = len(error)
-    return Candidates(
-        kind=LoopKind.FOUR_BAR,
-        fixed_a=fixed[0],
-        fixed_b=fixed[1],
-        direction=np.zeros(count, dtype=complex),
-        moving_a=moving[0],
-        moving_b=moving[1],
-        guided=moving[0],
-        error=error,
-        miss=np.zeros(count),
     )
 
 
@@ -264,132 +240,41 @@ def watt_linkage(group: WattGroup, k: int, wishes: Wishes, name: str) -> Linkage
 # A Watt-II six-bar of a task, with the verdict on it.
 
 
-@internal("group", "index", "wishes", "changed", "linkage", "kinds")
-@dataclass(frozen=True, kw_only=True, eq=False, repr=False)
-class WattDesign(SweptDesign):
-    """One Watt-II six-bar with its verdict.
+def watt_design(group: WattGroup, k: int, wishes: Wishes) -> SweptDesign:
+    """The k-th six-bar; only one that changes neither circuit nor branch is swept."""
+    task, changed = group.task, group.defect(k)
+    inputs = (group.inputs + first_angle(group, k, wishes)).tolist()
+    linkage = watt_linkage(group, k, wishes, task.name)
+    if changed is None:
+        improved = proved_design(linkage)
+    else:
+        improved = ImprovedDesign.unproved(linkage, changed.message)
+    return SweptDesign(
+        task=task,
+        mechanism=WATT_II,
+        driven=Drive.A0.value,
+        error_unit=task.angle.value,
+        improved=replace(
+            improved,
+            largest=np.nan if changed else _largest_error(task, improved),
+            inputs=tuple(map(task.angle.from_radians, inputs)),
+        ),
+        wishes=wishes,
+        place=group.points(k),
+        changed=changed,
+    )
 
-    Parameters
-    ----------
-    group : WattGroup
-        All six-bars of the task.
-    index : int
-        Its place among them.
-    changed : Defect, optional
-        A change of circuit or branch of one of the loops, or that this is not decided. Without
-        one, the motion is judged.
 
-    Examples
-    --------
-    >>> import linkwork as lw
-    >>> from linkwork.synthesis.solvers.watt import WattDesign
-    >>> issubclass(WattDesign, lw.synthesis.JudgedDesign)
-    True
+def _largest_error(task: Task, improved: ImprovedDesign) -> float:
+    """The largest structural error in the rows of the function's range, 0 for pairs [file's angle
+    unit].
     """
-
-    group: WattGroup
-    index: int
-    changed: Defect | None
-
-    @classmethod
-    def of(cls, group: WattGroup, k: int, wishes: Wishes) -> WattDesign:
-        """The k-th six-bar, judged."""
-        task = group.task
-        swept = cache(lambda: proved_design(watt_linkage(group, k, wishes, task.name)))
-        changed = group.defect(k)
-        return cls(task=task, swept=swept, wishes=wishes, group=group, index=k, changed=changed)
-
-    @property
-    def mechanism(self) -> str:
-        """The kind of mechanism."""
-        return WATT_II
-
-    @property
-    def driven(self) -> str:
-        """The fixed pivot of the driven link."""
-        return Drive.A0.value
-
-    @property
-    def numbers(self) -> dict[str, float]:
-        """The numbers that vary; none, since the solver lists all designs."""
-        return {}
-
-    @cached_property
-    def points(self) -> dict[str, complex]:
-        """The points at the first position [length]."""
-        return self.group.points(self.index)
-
-    @property
-    def inputs(self) -> tuple[float, ...]:
-        """The inputs at the positions [file units]."""
-        radians = self.group.inputs + self._first_angle
-        return tuple(map(self.task.angle.from_radians, radians.tolist()))
-
-    @property
-    def _first_angle(self) -> float:
-        return first_angle(self.group, self.index, self.wishes)
-
-    @cached_property
-    def description(self) -> Linkage:
-        """The mechanism, with the name of its task."""
-        return watt_linkage(self.group, self.index, self.wishes, self.task.name)
-
-    @property
-    def goals(self) -> dict[str, float]:
-        """None: positions are met."""
-        return {}
-
-    @property
-    def transmission(self) -> float:
-        """A lower bound of the least transmission angle of both loops in the driven range, NaN for
-        a design that changes branch or circuit [file's angle unit].
-        """
-        return float("nan") if self.changed else super().transmission
-
-    @cached_property
-    def error(self) -> float:
-        """The largest structural error in the rows of the function's range, 0 for pairs, NaN
-        for a design that changes branch or circuit [file's angle unit].
-        """
-        if self.changed:
-            return float("nan")
-        motion, goal = self.improved.motion, self.task.function
-        if motion is None or ERROR not in self.description.outputs or goal is None:
-            return 0.0
-        solved = motion.found
-        wrong = goal.errors(motion["crank"][solved], motion["rocker"][solved], self.task.angle.turn)
-        return float(np.abs(wrong).max(initial=0.0))
-
-    @property
-    def error_unit(self) -> str:
-        """The unit of the error."""
-        return self.task.angle.value
-
-    @cached_property
-    def defects(self) -> tuple[Defect, ...]:
-        """Its defects in words; none for a sound design.
-
-        Both loops are on one side at all positions, and a sweep without a dead point, each row
-        proved, leads from the first position through the driven range: it passes all of them.
-        """
-        if self.changed is not None:
-            return (self.changed,)
-        return (*self._outside(), *super().defects)
-
-    def _outside(self) -> Iterator[Defect]:
-        if self.wishes.range is not None and self.wishes.range.turn:
-            return
-        low, high = sorted(driven_range(self.group, self.index, self.wishes))
-        places = self.group.inputs + self._first_angle
-        outside = (places < low - ROUNDED_ANGLE) | (places > high + ROUNDED_ANGLE)
-        if outside.any():
-            message = f"position {outside.argmax() + 1} is outside the driven range"
-            yield Defect(kind=DefectKind.RANGE, between=None, message=message)
-
-    def _details(self) -> Mapping[str, Any]:
-        details = super()._details() if not self.changed else {}
-        names = ("proved_in_motion", "tested_in_rows")
-        return {"inputs": list(self.inputs), **{name: details.get(name, []) for name in names}}
+    goal, motion = task.function, improved.motion
+    if motion is None or goal is None or ERROR not in improved.description.outputs:
+        return 0.0
+    solved = motion.found
+    wrong = goal.errors(motion["crank"][solved], motion["rocker"][solved], task.angle.turn)
+    return float(np.abs(wrong).max(initial=0.0))
 
 
 # ----------------------------------------------------------------------
@@ -401,7 +286,7 @@ _EQUAL_ANGLES = 1e-9  # rad: angles that differ by whole turns
 
 def solve_watt(
     task: Task, wishes: Wishes, progress: Callable[[float], None] | None
-) -> tuple[tuple[WattDesign, ...], SolvedTask]:
+) -> tuple[tuple[SweptDesign, ...], SolvedTask]:
     """Designs that are not ranked yet, and the solutions.
 
     Raises
@@ -409,6 +294,14 @@ def solve_watt(
     MechanismError
         If two pairs are the same but for whole turns.
     """
+    group, solved = solved_group(task, progress)
+    return tuple(watt_design(group, k, wishes) for k in range(len(group))), solved
+
+
+def solved_group(
+    task: Task, progress: Callable[[float], None] | None
+) -> tuple[WattGroup, SolvedTask]:
+    """The six-bars of a task, and the solutions; raises like :func:`solve_watt`."""
     goal = task.function
     assert goal is not None, "a task of functions has one"
     inputs, outputs = (values * task.angle.radians for values in goal.precision_points())
@@ -416,11 +309,8 @@ def solve_watt(
     every, taken = _nine_pairs(np.stack([inputs, outputs]))
     six_bars = watt_six_bars(*every, progress=progress)
     zero = np.array([inputs[0], outputs[0]]) if goal.starts_fixed else None
-    group = watt_group(task, six_bars, taken, zero)
-    designs = tuple(WattDesign.of(group, k, wishes) for k in range(len(group)))
     grade, message = _completeness(six_bars, len(inputs))
-    return designs, SolvedTask(
-        candidates=(),
+    return watt_group(task, six_bars, taken, zero), SolvedTask(
         complex=len(six_bars.roots.x),
         real=len(six_bars),
         proved=int(six_bars.proved.sum()),

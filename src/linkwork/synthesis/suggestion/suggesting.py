@@ -66,7 +66,7 @@ class SuggestedDesign:
         improved, points = self.improved, tuple(position.point for position in task.positions)
         if points != self.positions:
             improved = replace(improved, inputs=(), misses=self._misses(points))
-        return SweptDesign(task=task, swept=lambda: improved, wishes=wishes)
+        return SweptDesign.of(task, improved, wishes)
 
     def _misses(self, points: tuple[Point, ...]) -> tuple[float, ...]:
         """The distances of points from the path; NaN without a path."""
