@@ -30,7 +30,7 @@ from linkwork.core.foundation.errors import InputError, MechanismError, Mechanis
 from linkwork.core.foundation.files import OwnFiles, as_path
 from linkwork.core.results.listing.motion_listing import Column, rounded_down, significant
 from linkwork.core.textfile.writer import save
-from linkwork.synthesis.atlas.near_paths import NearPath, PathAtlas
+from linkwork.synthesis.atlas.path_atlas import NearPath, PathAtlas
 from linkwork.synthesis.defects.verdicts import DefectKind, JudgedDesign
 from linkwork.synthesis.designs_folder import (
     FolderOptions,
