@@ -42,10 +42,14 @@ from linkwork.core.commands.terminal import (
 from linkwork.core.foundation.errors import InputError
 from linkwork.core.results.listing.motion_listing import Column, short, significant
 from linkwork.core.results.motion import Motion
-from linkwork.core.results.tables import driven_text
-from linkwork.design.listing import contribution_columns, sampled_fields, tolerance_fields
 from linkwork.design.sensitivities import is_of_motion
-from linkwork.design.tolerance_results import Sensitivity, SensitivityStatus, Tolerance
+from linkwork.design.tolerance_results import (
+    Sensitivity,
+    SensitivityStatus,
+    Tolerance,
+    contribution_columns,
+    tolerance_fields,
+)
 
 # ----------------------------------------------------------------------
 # Sensitivities and tolerances as pages of text.
@@ -53,29 +57,22 @@ from linkwork.design.tolerance_results import Sensitivity, SensitivityStatus, To
 
 def sensitivity_lines(result: Sensitivity) -> list[str]:
     """The derivatives by number, the largest first."""
-    lines = title_lines(result.mechanism)
-    rows = result.value.ndim > 0
-    at = {} if rows else {name: float(value) for name, value in result.inputs.items()}
-    where = f"at {driven_text(at, result.input_units)}" if at else ""
-    if rows:
-        where = f"in {len(result)} positions"
-    counts = Counter(status for status in result.statuses if status is not SensitivityStatus.FOUND)
-    if len(counts) and SensitivityStatus.FOUND not in result.statuses and not rows:
+    lines, rows = title_lines(result.mechanism), result.value.ndim > 0
+    where = f"in {len(result)} positions" if rows else result.where and f"at {result.where}"
+    counts = Counter(result.statuses)
+    found = counts.pop(SensitivityStatus.FOUND, 0)
+    if rows or found:
+        lines += sentence(good, f"Sensitivity of {result.of}", where)
+    else:
         lines += sentence(bad, f"No sensitivity of {result.of}", where)
         lines += fields([("why", result.status.value)])
         if result.status is not SensitivityStatus.CORNER:
             return lines
+    if rows:
+        others = [(status.label, f"{count}: {status.value}") for status, count in counts.items()]
+        lines += fields([("found", str(found)), *others])
     else:
-        lines += sentence(good, f"Sensitivity of {result.of}", where)
-    if not rows:
         lines += fields([("value", f"{short(float(result.value))} {result.unit}".rstrip())])
-    else:
-        lines += fields([("found", str(result.statuses.count(SensitivityStatus.FOUND)))])
-        lines += (
-            fields([(status.label, f"{count}: {status.value}") for status, count in counts.items()])
-            if counts
-            else []
-        )
     names = result.effective
     if names:
         lines += ["", *_table(result, names, rows)]
@@ -133,19 +130,15 @@ def sensitivity_data(sensitivity: Sensitivity) -> dict[str, Any]:
 
 def tolerance_lines(tolerance: Tolerance) -> list[str]:
     """Worst case, root sum square, and the share of each number and pin."""
-    lines = title_lines(tolerance.mechanism)
     where = f"at {tolerance.where}" if tolerance.where else ""
-    if tolerance.status is not SensitivityStatus.FOUND:
-        lines += sentence(bad, f"No tolerance of {tolerance.of}", where)
-        lines += fields([("why", tolerance.status.value)])
-        return [*lines, *_sampled(tolerance)]
-    lines += sentence(good, f"Tolerance of {tolerance.of}", where)
-    lines += [*fields(tolerance_fields(tolerance)), *_sampled(tolerance)]
-    return [*lines, "", *table_lines(contribution_columns(tolerance))]
-
-
-def _sampled(tolerance: Tolerance) -> list[str]:
-    return [] if tolerance.sampled is None else fields(sampled_fields(tolerance))
+    is_found = tolerance.status is SensitivityStatus.FOUND
+    style, head = (good, "Tolerance") if is_found else (bad, "No tolerance")
+    lines = [
+        *title_lines(tolerance.mechanism),
+        *sentence(style, f"{head} of {tolerance.of}", where),
+        *fields(tolerance_fields(tolerance)),
+    ]
+    return [*lines, "", *table_lines(contribution_columns(tolerance))] if is_found else lines
 
 
 def tolerance_data(tolerance: Tolerance) -> dict[str, Any]:

@@ -129,7 +129,7 @@ def tolerance_of(
     status = result.status
     if status is SensitivityStatus.FOUND and not math.isfinite(total):
         status = SensitivityStatus.CORNER
-    shared = [_with_share(part, total) for part in parts]
+    shared = [replace(p, share=p.standard**2 / total if total > 0.0 else 0.0) for p in parts]
     sampled = None
     if count and status is not SensitivityStatus.NO_POSITION:
         sampled = _sample(model, solved, of, deviations, forces, (count, start))
@@ -183,10 +183,6 @@ def _contributions(
         )  # fmt: skip
 
 
-def _with_share(part: Contribution, total: float) -> Contribution:
-    return replace(part, share=part.standard**2 / total if total > 0.0 else 0.0)
-
-
 def _sample(
     model: Model,
     solved: Position | Motion,
@@ -204,46 +200,39 @@ def _sample(
         )
         values = _of_designs(model, solved, of, plan)
     else:
-        values = np.full(count, float(_nominal(model, solved, of)))
+        nominal = solved.value(of) if isinstance(solved, Motion) else solved[of]
+        values = np.full(count, float(nominal))
     # another stream than that of the numbers
     generator = np.random.Generator(np.random.Philox(seed + 1))
     for point, size in deviations.clearances.items():
         for force in forces[point]:
             values = values + size * force * np.cos(generator.uniform(0.0, FULL_TURN, count))
     there = values[np.isfinite(values)]
-    if not len(there):
-        nan = math.nan
-        return Sampled(designs=count, found=0, seed=seed, mean=nan, deviation=nan, error=nan,
-                       low=nan, high=nan)  # fmt: skip
-    deviation = float(there.std(ddof=1)) if len(there) > 1 else 0.0
+    # without a design all numbers are NaN
+    known = there if len(there) else np.full(1, np.nan)
+    deviation = float(there.std(ddof=1)) if len(there) > 1 else 0.0 * float(known[0])
     return Sampled(
         designs=count,
         found=len(there),
         seed=seed,
-        mean=float(there.mean()),
+        mean=float(known.mean()),
         deviation=deviation,
         error=deviation / math.sqrt(2.0 * max(len(there) - 1, 1)),
-        low=float(there.min()),
-        high=float(there.max()),
+        low=float(known.min()),
+        high=float(known.max()),
     )
-
-
-def _nominal(model: Model, solved: Position | Motion, of: str) -> float:
-    return solved.value(of) if isinstance(solved, Motion) else solved[of]
 
 
 def _of_designs(
     model: Model, solved: Position | Motion, of: str, plan: Mapping[str, Array]
 ) -> Array:
     """The quantity of every design, (D,); NaN where it does not exist."""
+    family_of = wings.use("families.family").family_of
     if isinstance(solved, Motion):
-        if of.strip() in LIMITS:
-            return wings.use("families.family").family_of(model, plan).reduced(())[of.strip()]
-        return wings.use("families.family").family_of(model, plan).reduced([of])[of]
+        name = of.strip()
+        return family_of(model, plan).reduced(() if name in LIMITS else [name])[name]
     # every design is followed from the position that all deviations start from
-    one = _at_one_row(model, solved)
-    swept = wings.use("families.family").family_of(one, plan).sweep(certify=False)
-    return swept[of][:, 0]
+    return family_of(_at_one_row(model, solved), plan).sweep(certify=False)[of][:, 0]
 
 
 def _at_one_row(model: Model, position: Position) -> Model:

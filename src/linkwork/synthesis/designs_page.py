@@ -67,19 +67,13 @@ def designs_page(
         f'<!doctype html><html lang="en"><head><meta charset="utf-8"><title>{title}</title>'
         '<meta name="viewport" content="width=device-width,initial-scale=1">'
         f"<style>{_STYLE}{inks.rules(_CLASS)}</style></head>"
-        f'<body class="{_CLASS}"><h1>{title}</h1><dl>{"".join(_counts(synthesis))}</dl>'
+        f'<body class="{_CLASS}"><h1>{title}</h1><dl>{"".join(_facts(synthesis))}</dl>'
         f"{_front(front)}"
         f'<h2>Delivered</h2><div class="pictures">{"".join(pictures)}</div>'
         f'<h2>All designs</h2><div class="wide"><table><thead><tr>{_head(synthesis)}</tr></thead>'
         f"<tbody>{''.join(_design_rows(synthesis, files))}</tbody></table></div>"
         f"<script>{_SORT}</script></body></html>\n"
     )
-
-
-def _solutions(solved: Synthesis) -> tuple[str, str]:
-    if solved.starts:
-        return "starts", str(solved.starts)
-    return ("solutions", f"{solved.complex} complex, {solved.real} real, {solved.proved} proved")
 
 
 def _front(picture: bytes) -> str:
@@ -89,16 +83,35 @@ def _front(picture: bytes) -> str:
     return f'<h2>Front</h2><figure class="front">{shown}</figure>'
 
 
-def _counts(synthesis: Synthesis) -> Iterator[str]:
-    pairs = [
-        _solutions(synthesis),
-        ("mechanisms", str(synthesis.linkages)),
-        ("designs", str(len(synthesis.designs))),
-        *((kind.value, str(count)) for kind, count in synthesis.defects.items()),
-        ("delivered", f"{len(synthesis.delivered)} of {synthesis.sound} without defects"),
-        ("completeness", synthesis.message),
-    ]
-    pairs += [("remark", text) for text in remarks_on(synthesis)]
+def synthesis_facts(synthesis: Synthesis) -> Iterator[tuple[str, str]]:
+    """How many solutions and designs there are, and whether these are all."""
+    if synthesis.starts:
+        yield "starts", str(synthesis.starts)
+        if not (synthesis.task.improvement and synthesis.task.improvement.front):
+            yield "fits", f"{synthesis.real}, different ones"
+    else:
+        yield "complex", f"{synthesis.complex} solution{'' if synthesis.complex == 1 else 's'}"
+        yield "real", str(synthesis.real)
+        yield "proved", str(synthesis.proved)
+    if synthesis.triples:
+        yield "triples", str(synthesis.triples)
+    yield "completeness", synthesis.message
+    if synthesis.interrupted:
+        yield "interrupted", "the designs are the best ones so far"
+    driven = len(synthesis.designs)
+    yield "mechanisms", str(synthesis.linkages)
+    each = "one for each link that can be driven"
+    if synthesis.starts:
+        each = f"driven at {synthesis.designs[0].driven}" if synthesis.designs else "none found"
+    yield "designs", f"{driven}, {each}"
+    for kind, count in synthesis.defects.items():
+        yield kind.value, f"{count}"
+    yield "without defects", str(synthesis.sound)
+    yield "delivered", str(len(synthesis.delivered))
+
+
+def _facts(synthesis: Synthesis) -> Iterator[str]:
+    pairs = [*synthesis_facts(synthesis), *(("remark", text) for text in remarks_on(synthesis))]
     if advice := advice_of(synthesis):
         pairs.append(("advice", advice))
     if len(synthesis.designs) > _MOST_ROWS:

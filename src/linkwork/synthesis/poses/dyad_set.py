@@ -240,9 +240,7 @@ def _made(crank: DyadSet, other: DyadSet, poses: PoseSet) -> Candidates:
     moving, direction = other.moving, -1j * other.normal
     if kind.body_line:
         # of the body's line: as far from the foot of A as the block comes, and to the same side
-        pin = (other.fixed[:, None] - d) / e - crank.moving[:, None]
-        reach = dot(direction[:, None], pin)
-        reach = np.take_along_axis(reach, np.abs(reach).argmax(axis=1)[:, None], axis=1)[:, 0]
+        reach = _reach(direction, (other.fixed[:, None] - d) / e, crank.moving)
         direction = direction * np.sign(reach)
         away = dot(other.normal, moving - crank.moving) * other.normal + np.abs(reach) * direction
         moving, direction = crank.moving + away, direction * np.abs(away) / away
@@ -260,6 +258,13 @@ def _made(crank: DyadSet, other: DyadSet, poses: PoseSet) -> Candidates:
     )
 
 
+def _reach(along: ComplexArray, pins: ComplexArray, start: ComplexArray) -> Array:
+    """The farthest places of pins (D, N) along lines (D,) from their starts, with their signs."""
+    places = dot(along[:, None], pins - start[:, None])
+    farthest = np.abs(places).argmax(axis=1)[:, None]
+    return np.asarray(np.take_along_axis(places, farthest, axis=1)[:, 0])
+
+
 def _couplings(first: DyadSet, second: DyadSet, poses: PoseSet) -> Candidates:
     """Oldham couplings: A and B on the body's lines, as far from their crossing as the blocks come
     and to the same side.
@@ -271,8 +276,7 @@ def _couplings(first: DyadSet, second: DyadSet, poses: PoseSet) -> Candidates:
     ends, lines = [], []
     for dyads in (first, second):
         along = -1j * dyads.normal
-        reach = dot(along[:, None], (dyads.fixed[:, None] - d) / e - centre[:, None])
-        reach = np.take_along_axis(reach, np.abs(reach).argmax(axis=1)[:, None], axis=1)[:, 0]
+        reach = _reach(along, (dyads.fixed[:, None] - d) / e, centre)
         ends.append(centre + reach * along)
         lines.append(along * np.sign(reach))
     a, b = ends
