@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import asdict, is_dataclass
 from pathlib import Path
 from typing import Any
@@ -329,7 +329,7 @@ def design_command(
         raise InputError("--save writes the mechanism with its --counterweights")
     check_outputs(file, options["save"])
     mechanism = read_mechanism(file, changes)
-    answers = dict(_answers(mechanism, options, input_values(mechanism, at), configuration))
+    answers = _answers(mechanism, options, input_values(mechanism, at), configuration)
     if not answers:
         raise InputError(
             "no option is set: add --flywheel, --motor, --harmonics, --counterweights or "
@@ -350,44 +350,33 @@ def design_command(
 
 def _answers(
     mechanism: Mechanism,
-    options: dict[str, Any],
+    options: Mapping[str, Any],
     at: dict[str, float] | None,
     configuration: str | None,
-) -> Iterator[tuple[str, Any]]:
+) -> dict[str, Any]:
     """The requested results by the names of their options."""
+    given = {name: value for name, value in options.items() if value not in (None, ())}
     motion: Motion | None = None
-    if any(options[name] for name in ("flywheel", "motor", "harmonics")):
+    if given.keys() & {"flywheel", "motor", "harmonics"}:
         with progress("sweeping") as tell:
             motion = mechanism.sweep(configuration=configuration, progress=tell)
-    if options["flywheel"] is not None:
-        yield "flywheel", design.flywheel(mechanism, options["flywheel"], motion=motion)
-    if options["motor"]:
-        stall, speed = options["motor"]
-        yield (
-            "motor",
-            design.motor_check(
-                mechanism,
-                stall=_number(stall),
-                free_speed=speed,
-                rated=options["rated"],
-                motion=motion,
-            ),
-        )
-    if options["harmonics"] is not None:
-        yield (
-            "harmonics",
-            design.harmonics(mechanism, options["harmonics"], options["count"], motion=motion),
-        )
-    if options["counterweights"] is not None:
-        with progress("balancing"):
-            yield "counterweights", design.counterweights(mechanism, options["counterweights"])
-    if options["inflection"] is not None:
-        yield (
-            "inflection",
-            design.inflection_circle(
-                mechanism, options["inflection"], at, configuration=configuration
-            ),
-        )
+    answers: dict[str, Callable[[Any], Any]] = {
+        "flywheel": lambda value: design.flywheel(mechanism, value, motion=motion),
+        "motor": lambda value: design.motor_check(
+            mechanism,
+            stall=_number(value[0]),
+            free_speed=value[1],
+            rated=options["rated"],
+            motion=motion,
+        ),
+        "harmonics": lambda of: design.harmonics(mechanism, of, options["count"], motion=motion),
+        "counterweights": lambda radius: design.counterweights(mechanism, radius),
+        "inflection": lambda link: design.inflection_circle(
+            mechanism, link, at, configuration=configuration
+        ),
+    }
+    with progress("computing"):
+        return {name: answer(given[name]) for name, answer in answers.items() if name in given}
 
 
 def _number(text: str) -> float:

@@ -53,20 +53,6 @@ class Cycle:
     curve: Piecewise
 
 
-def column_of(model: Model, what: str) -> str:
-    """The only input of a mechanism; ``what`` needs it.
-
-    Raises
-    ------
-    InputError
-        For several inputs, or none.
-    """
-    inputs = model.description.inputs
-    if len(inputs) != 1:
-        raise InputError(f"{what} needs one input, the mechanism has {len(inputs)}")
-    return inputs[0].column
-
-
 def whole_turn(model: Model, motion: Motion, name: str) -> Cycle:
     """A quantity over one turn of the only input.
 
@@ -235,14 +221,17 @@ def motor_check(
     """
     model = mechanism.model
     motion = mechanism.sweep() if motion is None else motion
-    column, timed = column_of(model, "a motor check"), model.description.timed
+    inputs, timed = model.description.inputs, model.description.timed
+    if len(inputs) != 1:
+        raise InputError(f"a motor check needs one input, the mechanism has {len(inputs)}")
+    column = inputs[0].column
     driven = model.untimed or model
     kind, scale = driven.motion_quantities.names.inputs[column], float(driven.input_scale[0])
     if not model.speed:
         raise InputError('a motor needs the speed of the input: speed = "300 rpm"')
     if motor is None and stall is not None:
         motor = Motor(stall=stall, free_speed=free_speed)
-    motor = motor or model.description.inputs[0].motor
+    motor = motor or inputs[0].motor
     if motor is None:
         raise InputError("there is no motor: add motor to the input, or give stall and free_speed")
     effort = motion.quantity(effort_name(column))

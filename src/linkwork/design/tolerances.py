@@ -28,10 +28,8 @@ from linkwork.core.results.position import Position
 from linkwork.design.sensitivities import (
     LIMITS,
     is_of_motion,
-    play_of_motion,
-    play_of_position,
-    sensitivity_of_motion,
-    sensitivity_of_position,
+    play_of,
+    sensitivity_of,
 )
 from linkwork.design.tolerance_results import (
     Contribution,
@@ -52,10 +50,10 @@ class Deviations:
     clearances: Mapping[str, float]
 
 
-def stated_deviations(
+def _stated_deviations(
     model: Model,
-    numbers: Mapping[str, float] | None = None,
-    clearances: Mapping[str, float] | None = None,
+    numbers: Mapping[str, float] | None,
+    clearances: Mapping[str, float] | None,
 ) -> Deviations:
     """The stated deviations and clearances, or those of the file.
 
@@ -96,54 +94,6 @@ def _size(name: str, value: float) -> float:
     if size < 0:
         raise InputError(f'"{name}" must not deviate by a negative number, got {size:g}')
     return size
-
-
-def tolerance_of(
-    model: Model,
-    solved: Position | Motion,
-    of: str,
-    deviations: Deviations,
-    *,
-    samples: int = 0,
-    seed: int = 1,
-) -> Tolerance:
-    """The tolerance of a quantity at a position, or of a number of a motion.
-
-    Raises
-    ------
-    UnknownNameError, InputError
-        For a quantity that is not known, or whose derivatives are not.
-    """
-    count, start = whole_number("samples", samples), whole_number("seed", seed)
-    names = [number.name for number in deviations.numbers]
-    pins = tuple((link, p) for p in deviations.clearances for link in pins_of(model.description)[p])
-    if isinstance(solved, Motion):
-        result = sensitivity_of_motion(model, solved, of, names)
-        moved = play_of_motion(model, solved, of, pins)
-    else:
-        result = sensitivity_of_position(model, solved, of, names)
-        moved = play_of_position(model, solved, of, pins)
-    forces = _pin_forces(pins, moved)
-    parts = list(_contributions(model, result, deviations, forces))
-    total = math.fsum(part.standard**2 for part in parts)
-    status = result.status
-    if status is SensitivityStatus.FOUND and not math.isfinite(total):
-        status = SensitivityStatus.CORNER
-    shared = [replace(p, share=p.standard**2 / total if total > 0.0 else 0.0) for p in parts]
-    sampled = None
-    if count and status is not SensitivityStatus.NO_POSITION:
-        sampled = _sample(model, solved, of, deviations, forces, (count, start))
-    return Tolerance(
-        mechanism=result.mechanism,
-        of=result.of,
-        unit=result.unit,
-        inputs={name: float(value) for name, value in result.inputs.items()},
-        input_units=result.input_units,
-        value=float(result.value),
-        contributions=tuple(sorted(shared, key=lambda part: (-part.share, part.name))),
-        status=status,
-        sampled=sampled,
-    )
 
 
 def _pin_forces(pins: tuple[tuple[str, str], ...], moved: Array) -> dict[str, Array]:
@@ -296,7 +246,8 @@ def tolerance(
     >>> round(found.worst_case, 6), found.contributions[0].name
     (0.057301, 'B A')
     """
-    stated = stated_deviations(mechanism.model, deviations, clearances)
+    model = mechanism.model
+    stated = _stated_deviations(model, deviations, clearances)
     solved: Motion | Position
     if is_of_motion(of):
         if at is not None:
@@ -304,4 +255,28 @@ def tolerance(
         solved = mechanism.sweep(configuration=configuration) if motion is None else motion
     else:
         solved = mechanism.solve(at, configuration=configuration)
-    return tolerance_of(mechanism.model, solved, of, stated, samples=samples, seed=seed)
+    count, start = whole_number("samples", samples), whole_number("seed", seed)
+    names = [number.name for number in stated.numbers]
+    pins = tuple((link, p) for p in stated.clearances for link in pins_of(model.description)[p])
+    result = sensitivity_of(model, solved, of, names)
+    forces = _pin_forces(pins, play_of(model, solved, of, pins))
+    parts = list(_contributions(model, result, stated, forces))
+    total = math.fsum(part.standard**2 for part in parts)
+    status = result.status
+    if status is SensitivityStatus.FOUND and not math.isfinite(total):
+        status = SensitivityStatus.CORNER
+    shared = [replace(p, share=p.standard**2 / total if total > 0.0 else 0.0) for p in parts]
+    sampled = None
+    if count and status is not SensitivityStatus.NO_POSITION:
+        sampled = _sample(model, solved, of, stated, forces, (count, start))
+    return Tolerance(
+        mechanism=result.mechanism,
+        of=result.of,
+        unit=result.unit,
+        inputs={name: float(value) for name, value in result.inputs.items()},
+        input_units=result.input_units,
+        value=float(result.value),
+        contributions=tuple(sorted(shared, key=lambda part: (-part.share, part.name))),
+        status=status,
+        sampled=sampled,
+    )
