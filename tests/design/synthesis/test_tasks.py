@@ -54,7 +54,7 @@ def test_the_examples_have_sound_designs_and_fit_the_schema(path: Path) -> None:
         (_MOTION.replace("angle = 45\n", "angle = 45\ninput = 20\n"), 3, "positions[1].input",
          "is missing: time all positions or none"),
         (_points(4).replace("path", "motion").replace("point", "input = 5\nangle = 1\npoint"), 8,
-         "positions[2].input", "is that of position 1: move one of them"),
+         "positions[2].input", "has the input of position 1: move one of them"),
         (_points(4).replace("'path'", "'path'\nmechanism = 'slider-crank'"), 3, "mechanism",
          'solved for the "four-bar" only: with [improve] starts = 1000 other kinds are fitted'),
         (_MOTION + "[wanted]\nlengths = { least = 50, most = 20 }\n", 19, "wanted.lengths",

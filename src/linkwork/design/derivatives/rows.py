@@ -296,10 +296,9 @@ class DifferentiatedRows(QuantityValues):
             jets = [Jet(*parts) for parts in zip(*columns, strict=True)]
             rows = self._residuals(dict(zip(self._symbols, jets, strict=True)))
             parts = [(jet.v, jet.d1, jet.d2)[order] for jet in rows]
-            for k in range(self.count):
-                # eq. (120)
-                terms = [(-self._inverse[:, k, i], part) for i, part in enumerate(parts)]
-                columns[order][k] = self.tape.combine(known[order][:, k], terms)
+            unknown = known[order][:, : self.count]
+            # eq. (120)
+            columns[order][: self.count] = self.tape.stepped(unknown, self._inverse, parts)
         jets = [Jet(*parts) for parts in zip(*columns, strict=True)]
         return dict(zip(self._symbols, jets, strict=True))
 
@@ -319,9 +318,8 @@ class DifferentiatedRows(QuantityValues):
             return {symbol: Jet(value, rate, zero) for symbol, value, rate in parts}
 
         parts = [row.d1 for row in self._residuals(jets())]
-        for k in range(self.count):
-            terms = [(-self._inverse[:, k, i], part) for i, part in enumerate(parts)]
-            first[k] = self.tape.combine(rates[:, k], terms)  # eq. (120)
+        # eq. (120)
+        first[: self.count] = self.tape.stepped(rates[:, : self.count], self._inverse, parts)
         # the copy shares all but variables and points
         moved = copy(self)
         moved._points = {}
@@ -476,15 +474,10 @@ class DifferentiatedFolds(DifferentiatedRows):
         bend: Any = zero
         for k, row in enumerate(rows):
             bend = bend + row.d1 * left[:, k]
-        inverse = self._bordered()
         parts = [row.v for row in rows] + [bend]
         unknown = [*range(self.count), self.lead]
-        values = {
-            k: self.tape.combine(
-                self.solution[:, k], [(-inverse[:, place, i], x) for i, x in enumerate(parts)]
-            )
-            for place, k in enumerate(unknown)
-        }
+        steps = self.tape.stepped(self.solution[:, unknown], self._bordered(), parts)
+        values = dict(zip(unknown, steps, strict=True))
         # inputs in lock-step follow the leading one
         for k, rate in enumerate(self._input_rate, start=self.count):
             if k != self.lead:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, fields, replace
 from functools import cache
 from itertools import combinations
 
@@ -264,8 +264,8 @@ class DyadProofs:
         """The dyads, with the solutions of another attempt where it proved more."""
         better = other.proved.sum(axis=1) > self.proved[index].sum(axis=1)
         changes = {}
-        for name in ("x", "is_real", "proved", "error", "condition", "complete"):
-            values = getattr(self, name).copy()
+        for name, known in vars(self).items():
+            values = known.copy()
             values[index[better]] = getattr(other, name)[better]
             changes[name] = values
         return replace(self, **changes)
@@ -430,8 +430,8 @@ class Refusal(CodedEnum):
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
-class Dyads:
-    """The solutions for N tasks, four each.
+class Dyads(DyadProofs):
+    """The solutions for N tasks, four each, and why some are no proved dyads.
 
     Parameters
     ----------
@@ -451,12 +451,7 @@ class Dyads:
     poses : NormalPoses
     """
 
-    x: ComplexArray
-    is_real: BoolArray
     refusal: StatusArray
-    error: Array
-    condition: Array
-    complete: BoolArray
     poses: NormalPoses
 
     @property
@@ -525,9 +520,9 @@ def _solve_in_parts(points: ComplexArray, angles: Array, further: Array) -> Dyad
         _solve_part(points[part], angles[part], further[part])
         for part in (slice(k, k + _PART) for k in range(0, len(points), _PART))
     ]
-    fields = ("x", "is_real", "refusal", "error", "condition", "complete")
+    arrays = [field.name for field in fields(Dyads) if field.name != "poses"]
     return Dyads(
-        **{name: np.concatenate([getattr(part, name) for part in parts]) for name in fields},
+        **{name: np.concatenate([getattr(part, name) for part in parts]) for name in arrays},
         poses=NormalPoses.of(points, angles),
     )
 
@@ -539,15 +534,14 @@ def _solve_part(points: ComplexArray, angles: Array, further: Array) -> Dyads:
     flat = np.abs(proofs.x[..., :5]).max(axis=2) * _FAR < np.abs(proofs.x).max(axis=2)
     refusal[flat] = Refusal.NO_JOINT.code
     refusal[family] = Refusal.FAMILY.code
-    return Dyads(
-        x=proofs.x,
+    known = replace(
+        proofs,
         is_real=proofs.is_real & ~flat & ~family[:, None],
-        refusal=refusal.astype(np.int8),
         error=np.where(proofs.proved, proofs.error, np.inf),
-        condition=proofs.condition,
         complete=proofs.complete & ~family,
-        poses=NormalPoses.of(points, angles),
     )
+    poses = NormalPoses.of(points, angles)
+    return Dyads(**vars(known), refusal=refusal.astype(np.int8), poses=poses)
 
 
 def _proved(

@@ -292,11 +292,9 @@ def repeated_points(
         same = one.point == other.point
         if one.angle is not None and other.angle is not None:
             same &= math.remainder(one.angle - other.angle, turn) == 0
-        if same and curve is not None:
-            first, again = curve.lines[j], curve.lines[k]
-            yield ("curve", "file"), f"repeats line {first} in line {again}: leave one out"
-        elif same:
-            yield ("positions", k), f"is the same as position {j + 1}: leave one out"
+        if same:
+            key, message = _in_file(curve, k, "is the same as", j)
+            yield key, f"{message}: leave one out"
 
 
 def repeated_inputs(
@@ -310,13 +308,18 @@ def repeated_inputs(
         at = math.remainder(position.input, turn)
         j, first = known.setdefault(at, (k, position.input))
         around = (j, k) == (0, len(positions) - 1) and first != position.input
-        if j == k or around:
-            continue
-        if curve is None:
-            yield ("positions", k, "input"), f"is that of position {j + 1}: move one of them"
-        else:
-            message = f"line {curve.lines[k]} has the input of line {curve.lines[j]}"
-            yield ("curve", "file"), f"{message}: move one of them"
+        if j != k and not around:
+            key, message = _in_file(curve, k, "has the input of", j, "input")
+            yield key, f"{message}: move one of them"
+
+
+def _in_file(
+    curve: Curve | None, k: int, relation: str, j: int, *entry: str
+) -> tuple[tuple[str | int, ...], str]:
+    """The key and the words of a position that has a relation to another one."""
+    if curve is None:
+        return ("positions", k, *entry), f"{relation} position {j + 1}"
+    return ("curve", "file"), f"line {curve.lines[k]} {relation} line {curve.lines[j]}"
 
 
 def _crossings(z: ComplexArray) -> CountArray:

@@ -144,15 +144,13 @@ class FunctionGoal:
         except ExpressionError as error:
             yield ("function", "of"), str(error)
             return
-        first, last = values[0], values[-1]
+        first = values[0]
         size = max(map(abs, values)) or 1.0
         shares = np.array(values) / size
         steps, spread = np.abs(np.diff(shares)), float(np.ptp(shares))
         if abs(shares[-1] - shares[0]) <= max(_AS_WRITTEN * spread, _ROUNDED):
-            text = f"has the value {first:g} at both ends"
-            if first != last:
-                text = f"has nearly the same value at both ends, {first:g} and {last:g}"
-            yield ("function", "of"), f"{text}, so that the output has no range"
+            text = f"has the value {first:g} at both ends, so that the output has no range"
+            yield ("function", "of"), text
         elif steps.max() > _LARGEST_STEP * spread:
             place = self._x(_DENSE)[steps.argmax()]
             text = f"jumps by {size * steps.max():.4g} near x = {place:.4g}"
