@@ -168,7 +168,7 @@ def _examples(synthesis: Synthesis) -> list[JudgedDesign]:
 @click.command("synthesize")
 @click.argument("task", metavar="TASK")
 @click.option("-o", "--output", metavar="FOLDER", help="Folder for the designs.")
-@click.option("--all", "every", is_flag=True, help="Write refused designs too, in FOLDER/refused.")
+@click.option("--all", "refused", is_flag=True, help="Write refused designs to FOLDER/refused.")
 @click.option("--draw", is_flag=True, help="Draw every written design (SVG).")
 @click.option("--csv", is_flag=True, help="Write a table of all designs: FOLDER/designs.csv.")
 @click.option("--html", is_flag=True, help="Write a page of all designs: FOLDER/index.html.")
@@ -180,12 +180,8 @@ def synthesize_command(
     context: click.Context,
     task: str,
     output: str | None,
-    every: bool,
-    draw: bool,
-    csv: bool,
-    html: bool,
-    force: bool,
     as_json: bool,
+    **flags: bool,
 ) -> None:
     """Find mechanisms for a task: poses, points, a curve or a function.
 
@@ -199,8 +195,8 @@ def synthesize_command(
       linkwork synthesize task.toml -o designs --draw --html
       linkwork synthesize task.toml -o designs --all --json
     """
-    options = FolderOptions(refused=every, draw=draw, csv=csv, html=html, force=force)
-    if output is None and any((every, draw, csv, html, force)):
+    options = FolderOptions(**flags)
+    if output is None and any(flags.values()):
         raise InputError("--all, --draw, --csv, --html and --force need a folder: add -o FOLDER")
     # a task in a file finds the files that it names beside it
     loaded = Task.load(task) if os.path.exists(task) else Task.loads(*text_of_source(task))

@@ -14,7 +14,7 @@ from typing import Any
 import numpy as np
 
 from linkwork.core.expression.derivatives import Jet
-from linkwork.core.foundation.arrays import Array
+from linkwork.core.foundation.arrays import Array, inverses
 from linkwork.core.foundation.errors import InputError
 from linkwork.core.foundation.lanes import is_batched
 from linkwork.core.foundation.names import GROUND
@@ -345,7 +345,7 @@ class _Equilibrium:
                 for other, answer in enumerate(solved.answers):
                     matrix[:, k, other] -= slope[:, place] * answer[:, j]
             sides.append(side)
-        return self.tape.stepped(np.zeros((rows, count)), -np.linalg.inv(matrix), sides)
+        return self.tape.stepped(np.zeros((rows, count)), -inverses(matrix), sides)
 
     def friction_effort(self) -> Any:
         """What friction adds to the effort of the only input, (B,)."""

@@ -354,7 +354,7 @@ def _copy_parts(edits: TextEdits, new: Mapping[str, str], mirrored: bool) -> Non
             copy = {**row, **(_mirrored(table, row) if mirrored else {})}
             for entry in entries(row, PARTS[table].keys):
                 if entry.of:
-                    key, *place = entry.path
+                    key, *place = str(entry.path[0]), *entry.path[1:]
                     name = known[canonical(str(entry.given))]
                     if place:
                         copy[key] = [*copy[key]]

@@ -149,6 +149,7 @@ def linkage_of(design: Design, task: Task, name: str, output: str = "") -> Linka
         arms.reverse()
     crank, rocker = [*arms, (), ()][:2]  # none of guided sides
     sliders = []
+    way: tuple[str, str]
     for moving, fixed, line, slider, block in _SIDES[turning:]:
         if fixed in kind.pivots:
             way, carried, on = (feet[0] if feet else "A", moving), fixed, "coupler"
