@@ -39,6 +39,7 @@ from linkwork.core.commands.terminal import (
     table_lines,
     title_lines,
 )
+from linkwork.core.foundation.arrays import Array
 from linkwork.core.foundation.errors import InputError
 from linkwork.core.results.listing.motion_listing import Column, short, significant
 from linkwork.core.results.motion import Motion
@@ -103,12 +104,11 @@ def _table(sensitivity: Sensitivity, names: tuple[str, ...], rows: bool) -> list
             units=[sensitivity.units[name] for name in names],
         ),
     ]
-    if not rows:
-        cells = [significant(float(sensitivity.derivatives[name])) for name in names]
-        columns.append(Column(header="derivative", cells=cells, align="point", units=units))
-        return table_lines(columns)
-    for header, extreme in (("smallest", np.fmin.reduce), ("largest", np.fmax.reduce)):
-        cells = [significant(float(extreme(sensitivity.derivatives[name]))) for name in names]
+    shown: dict[str, Callable[[Array], Any]] = {"derivative": np.asarray}
+    if rows:
+        shown = {"smallest": np.fmin.reduce, "largest": np.fmax.reduce}
+    for header, of_rows in shown.items():
+        cells = [significant(float(of_rows(sensitivity.derivatives[name]))) for name in names]
         columns.append(Column(header=header, cells=cells, align="point", units=units))
     return table_lines(columns)
 

@@ -25,12 +25,7 @@ from linkwork.core.mechanism.varied_numbers import (
 from linkwork.core.motion.model import Model, model_of
 from linkwork.core.results.motion import Motion
 from linkwork.core.results.position import Position
-from linkwork.design.sensitivities import (
-    LIMITS,
-    is_of_motion,
-    play_of,
-    sensitivity_of,
-)
+from linkwork.design.sensitivities import LIMITS, is_of_motion, play_of, sensitivity_of
 from linkwork.design.tolerance_results import (
     Contribution,
     Sampled,
