@@ -67,8 +67,7 @@ def play_of(
             plays.append(moved if part.depends_on_values else moved.sum(axis=1, keepdims=True))
         return np.concatenate(plays, axis=1) if plays else np.zeros((len(pins), 0, 2))
     quantity, row = model.quantities.find(of), row_of(model, solved)
-    v = np.where((row.found & row.regular)[:, None], row.v, np.nan)
-    taped = LoadedRows(model, (), v, quantity.needs, pins)
+    taped = LoadedRows(model, (), row.differentiable, quantity.needs, pins)
     with np.errstate(all="ignore"):
         # R of eq. (124)
         rates = taped.tape.backward(quantity.values(taped, taped.speed))
@@ -100,8 +99,7 @@ def sensitivity_of(
     _check(named, of)
     named.check_rate(model.speed)
     numbers, refused = _fitting_numbers(model, rows, by)
-    # rows without a derivative would spoil the inverses of other rows
-    v = np.where((rows.found & rows.regular)[:, None], rows.v, np.nan)
+    v = rows.differentiable
     derivatives: dict[str, Array] = {}
     for group in groups_of(model.description, numbers):
         taped = LoadedRows(model, group, v, named.needs)
@@ -110,7 +108,7 @@ def sensitivity_of(
         each = (len(group), len(v))
         rates = np.broadcast_to(rates, each) + _fitting(taped, each)
         derivatives |= dict(zip((q.name for q in group), rates, strict=True))
-    value = np.broadcast_to(np.atleast_1d(named.values(rows.solved, model.speed)), len(v))
+    value = np.broadcast_to(np.atleast_1d(named.values(solved, model.speed)), len(v))
     status = np.full(len(v), SensitivityStatus.FOUND.code)
     corner = np.isnan(value)
     for name, rates in derivatives.items():

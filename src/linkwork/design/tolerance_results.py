@@ -374,7 +374,7 @@ def tolerance_fields(tolerance: Tolerance) -> Iterator[tuple[str, str]]:
             "sampled",
             f"deviation {significant(drawn.deviation)} ± {significant(drawn.error, 2)} {unit}, "
             f"mean {short(drawn.mean)} {unit}, from {short(drawn.low)} to {short(drawn.high)} "
-            f"{unit}; {drawn.found} of {drawn.designs} designs found, seed {drawn.seed}",
+            f"{unit}; {drawn.found} of {drawn.designs} found, seed {drawn.seed}",
         )
 
 

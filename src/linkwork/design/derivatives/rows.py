@@ -38,23 +38,27 @@ from linkwork.families.building import write_equations
 
 @dataclass(frozen=True, eq=False)
 class RegularRows:
-    """Solved rows: variables (B, N), which exist, which have rates, and the rows themselves."""
+    """Solved rows: variables (B, N), which exist, and which have rates."""
 
     v: Array
     found: BoolArray
     regular: BoolArray
-    solved: Solved
+
+    @property
+    def differentiable(self) -> Array:
+        """The variables, NaN in rows without a derivative, which would spoil inverses of others."""
+        return np.where((self.found & self.regular)[:, None], self.v, np.nan)
 
     def take(self, order: IndexArray) -> RegularRows:
         """Rows in another order."""
-        return RegularRows(self.v[order], self.found[order], self.regular[order], self.solved)
+        return RegularRows(self.v[order], self.found[order], self.regular[order])
 
 
 def row_of(model: Model, position: Position) -> RegularRows:
     """One position as a row."""
     v = np.append(position.q, np.array([*position.input.values()]) * model.input_scale)[None, :]
     solved = np.array([position.status.ok])
-    return RegularRows(v, solved, _rates_exist(model, position, 1), position)
+    return RegularRows(v, solved, _rates_exist(model, position, 1))
 
 
 def rows_of(model: Model, motion: Motion, *further: Motion) -> RegularRows:
@@ -69,7 +73,7 @@ def rows_of(model: Model, motion: Motion, *further: Motion) -> RegularRows:
     ]  # fmt: skip
     solved = np.concatenate([each.found for each in parts])
     regular = np.concatenate([_rates_exist(model, each, len(each)) for each in parts])
-    return RegularRows(np.concatenate(v), solved, regular, motion)
+    return RegularRows(np.concatenate(v), solved, regular)
 
 
 def _rates_exist(model: Model, solved: Solved, count: int) -> BoolArray:
