@@ -274,7 +274,9 @@ def test_tasks_that_a_six_bar_cannot_do_are_refused(tables: dict[str, Any], mess
 
 def test_pairs_are_counted_and_must_differ() -> None:
     pairs = [[10.0 * k, float(k * k)] for k in range(10)]
-    with pytest.raises(lw.MechanismError, match="10 pairs leave no watt-ii with free start angles: keep 9"):
+    with pytest.raises(
+        lw.MechanismError, match="10 pairs leave no watt-ii with free start angles: keep 9"
+    ):
         lw.Task.function(pairs, mechanism="watt-ii")
     with pytest.raises(lw.MechanismError, match="5 given: give 6 or more"):
         lw.Task.function(pairs[:5], mechanism="watt-ii")
