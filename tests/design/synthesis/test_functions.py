@@ -304,10 +304,10 @@ def test_pairs_whose_outputs_are_equal_are_refused(
 @pytest.mark.parametrize(
     ("of", "end", "told"),
     [
-        ("sin(x)", np.pi, "has the value 0 at both ends"),
-        ("sin(x)", 2.0 * np.pi, "has the value 0 at both ends"),
-        ("sin(x)", 3.14159, "has the value 0 at both ends"),
-        ("sin(x)^2 + cos(x)^2", 0.7, "(nearly the same|the) value.* at both ends.*"),
+        ("sin(x)", np.pi, "the value 0 at both ends"),
+        ("sin(x)", 2.0 * np.pi, "the value 0 at both ends"),
+        ("sin(x)", 3.14159, "the value 0 at both ends"),
+        ("sin(x)^2 + cos(x)^2", 0.7, "the value.* at both ends"),
         ("9e307*cos(x)", 2.0 * np.pi, "the value 9e[+]307 at both ends"),
     ],
 )  # fmt: skip
