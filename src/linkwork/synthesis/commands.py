@@ -178,6 +178,7 @@ def _examples(synthesis: Synthesis) -> list[JudgedDesign]:
 @click.pass_context
 def synthesize_command(
     context: click.Context,
+    /,
     task: str,
     output: str | None,
     as_json: bool,
