@@ -18,7 +18,7 @@ from linkwork.families.study import (
     read_plan_text,
     run_study,
 )
-from linkwork.synthesis.atlas.path_atlas import SHIPPED, PathAtlas, read_atlas
+from linkwork.synthesis.atlas.path_atlas import SHIPPED, PathAtlas
 from linkwork.synthesis.atlas.stored_paths import atlas_of_stores
 
 _COUNT, _CHECKED = 20_000, 300  # designs of each plan
@@ -41,7 +41,7 @@ def build(count: int) -> PathAtlas:
 
 def check() -> None:
     """The first designs of every plan are those of the shipped atlas."""
-    few, whole = build(_CHECKED), read_atlas()
+    few, whole = build(_CHECKED), PathAtlas.shipped()
     for name, one, other in zip(_NAMES, few.families, whole.families, strict=True):
         count = len(one)
         same = np.array_equal(one.numbers, other.numbers[:count])
@@ -57,5 +57,5 @@ if __name__ == "__main__":
     if sys.argv[1:] == ["--check"]:
         check()
     else:
-        build(_COUNT).write(SHIPPED)
+        build(_COUNT).save(SHIPPED)
         sys.stdout.write(f"{SHIPPED.relative_to(ROOT)}: {SHIPPED.stat().st_size} bytes\n")

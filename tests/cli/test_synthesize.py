@@ -450,16 +450,10 @@ _POSES = "".join(
         ("task = 'motion'\n[[positions]]\npoint = [0, 0]\nangle = 0\n",
          "1 problem in task.toml\n"
          "  line 3  positions  is only one: a task needs two or more"),
-        (f"task = 'path'\n{_POINTS}[wanted]\nlengths = {{ most = 30 }}\n",
-         "1 problem in task.toml\n"
-         "  line 10  positions[4].point  is 158.114 from position 1, out of reach of links\n"
-         "                               of at most 30: two arms reach 120"),
         (f"task = 'motion'\n{_POSES}[wanted]\ninput = 'turns fully'\n"
          "lengths = { least = 50, most = 20 }\ntransmission = { least = 95 }\n"
          "clear_of = [[60, 12, 5]]\n",
-         "4 problems in task.toml\n"
-         "  line 10  positions[3].point         is 117.047 from position 1, out of reach\n"
-         "                                      of links of at most 20: two arms reach 80\n"
+         "3 problems in task.toml\n"
          "  line 14  wanted.lengths             least = 50 and most = 20 contradict each\n"
          "                                      other\n"
          "  line 15  wanted.transmission.least  must be at least 0 and below 90, got 95\n"
@@ -468,10 +462,8 @@ _POSES = "".join(
         (f"task = 'path'\n{_POINTS}[given]\nfixed_pivots = [[500, 0], [40, 30]]\n[wanted]\n"
          "lengths = { most = 300 }\nclear_of = [[40, 31, 2]]\n"
          "fixed_pivots = { inside = [[0, 0], [100, 0], [100, 100]] }\n",
-         "3 problems in task.toml\n"
+         "2 problems in task.toml\n"
          "  line 12  given.fixed_pivots[1]  is outside [wanted] fixed_pivots inside\n"
-         "  line 12  given.fixed_pivots[2]  is in circle 1 of clear_of, so no design can\n"
-         "                                  be clear of it\n"
          "  line 14  wanted.lengths         exclude the ground of length 460.977: change\n"
          "                                  them, or [given] fixed_pivots"),
     ],

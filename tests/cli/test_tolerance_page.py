@@ -69,7 +69,7 @@ def test_a_tolerance_shows_shares_and_random_designs(run: Run, crank: str) -> No
     assert done.exit_code == 0
     assert max(map(len, done.stdout.splitlines())) <= 80
     assert "worst case       ± 0.0951085 mm\n" in done.stdout
-    assert "500 of 500 designs found, seed 1" in done.stdout
+    assert "500 of 500 found, seed 1" in done.stdout
     lines = done.stdout.splitlines()
     assert [line.split()[0] for line in lines[-4:]] == ["B", "pin", "d.offset", "O2"]
 

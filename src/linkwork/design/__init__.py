@@ -7,10 +7,7 @@ from typing import TYPE_CHECKING
 from linkwork.core.foundation.loading import loader
 
 if TYPE_CHECKING:
-    from linkwork.design.balancing import (
-        balanced as balanced,
-        counterweights as counterweights,
-    )
+    from linkwork.design.balancing import balanced as balanced, counterweights as counterweights
     from linkwork.design.machine import (
         flywheel as flywheel,
         harmonics as harmonics,

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 import numpy as np
 
@@ -23,53 +23,21 @@ from linkwork.design.results import Counterweight, Counterweights
 from linkwork.forces.reactions.solving import forces_of_motion
 
 
-@dataclass(frozen=True)
-class _FourBar:
-    """The links of a four-bar: both on ground with their fixed and moving pins, and the coupler."""
-
-    sides: tuple[tuple[str, str, str], tuple[str, str, str]]
-    coupler: str
-
-
-def counterweights_of(linkage: Linkage, radius: float | Mapping[str, float]) -> Counterweights:
-    """The counterweights of crank and rocker, and how the linkage shakes before and after.
-
-    Raises
-    ------
-    InputError
-        If the mechanism is no four-bar with pins and masses, or a radius is not positive.
-    """
-    weights = tuple(_weights(linkage, radius))
-    (force, moment), (force_after, moment_after) = (
-        _shaking(each) for each in (linkage, balanced_linkage(linkage, weights))
-    )
-    mass, length, unit = linkage.mass, linkage.length, linkage.force
-    return Counterweights(
-        weights=weights,
-        force=(force, force_after),
-        moment=(moment, moment_after),
-        units={
-            "mass": mass, "product": f"{mass}·{length}", "force": unit,
-            "moment": f"{unit}·{length}",
-        },
-    )  # fmt: skip
-
-
 def _weights(linkage: Linkage, radius: float | Mapping[str, float]) -> Iterator[Counterweight]:
     """The counterweights of crank and rocker at a distance from their pins on ground."""
-    bar = _four_bar(linkage)
+    sides, coupler = _four_bar(linkage)
     # in the frames of their links
     first, second = (
         _local(linkage, link, moving) - _local(linkage, link, fixed)
-        for link, fixed, moving in bar.sides
+        for link, fixed, moving in sides
     )
-    start, end = (_local(linkage, bar.coupler, moving) for _, _, moving in bar.sides)
-    mass, centre = _mass(linkage, bar.coupler)
+    start, end = (_local(linkage, coupler, moving) for _, _, moving in sides)
+    mass, centre, _ = _mass(linkage, coupler)
     share = (centre - start) / (end - start)
     for (link, fixed, _), arm, part in zip(
-        bar.sides, (first, second), (1.0 - share, share), strict=True
+        sides, (first, second), (1.0 - share, share), strict=True
     ):
-        link_mass, place = _mass(linkage, link)
+        link_mass, place, _ = _mass(linkage, link)
         # eq. (80)
         needed = -(link_mass * (place - _local(linkage, link, fixed)) + mass * part * arm)
         size = abs(needed)
@@ -87,17 +55,16 @@ def _weights(linkage: Linkage, radius: float | Mapping[str, float]) -> Iterator[
         )
 
 
-def balanced_linkage(linkage: Linkage, weights: tuple[Counterweight, ...]) -> Linkage:
+def _balanced(linkage: Linkage, weights: tuple[Counterweight, ...]) -> Linkage:
     """The linkage with its counterweights."""
     masses = dict(linkage.masses)
     for weight in weights:
-        link_mass, centre = _mass(linkage, weight.link)
+        link_mass, centre, inertia = _mass(linkage, weight.link)
         total = link_mass + weight.mass
         if not total:
             continue
         place = complex(*weight.place)
         both = (link_mass * centre + weight.mass * place) / total
-        inertia = _inertia(linkage, weight.link)
         inertia += link_mass * abs(centre - both) ** 2 + weight.mass * abs(place - both) ** 2
         masses[weight.link] = Mass(mass=total, center=(both.real, both.imag), inertia=inertia)
     return replace(linkage, masses=masses)
@@ -118,7 +85,8 @@ def _shaking(linkage: Linkage) -> tuple[float, float]:
     return float(np.nanmax(np.hypot(x, y))), float(np.nanmax(np.abs(moment)))
 
 
-def _four_bar(linkage: Linkage) -> _FourBar:
+def _four_bar(linkage: Linkage) -> tuple[list[tuple[str, str, str]], str]:
+    """Both links on ground with their fixed and moving pins, and the coupler."""
     # loads and springs join no links
     parts = [part for part in linkage.parts if part.kind is not None or part.mobility]
     moving = [link for link in linkage.links if link != GROUND]
@@ -137,7 +105,7 @@ def _four_bar(linkage: Linkage) -> _FourBar:
         )
     if not linkage.masses:
         raise InputError(f"{linkage.name} has no masses to balance: add [masses]")
-    return _FourBar(sides=(sides[0], sides[1]), coupler=rest[0])
+    return sides, rest[0]
 
 
 def _local(linkage: Linkage, link: str, point: str) -> complex:
@@ -145,29 +113,17 @@ def _local(linkage: Linkage, link: str, point: str) -> complex:
     return complex(linkage.shapes.local[link][point])
 
 
-def _mass(linkage: Linkage, link: str) -> tuple[float, complex]:
-    """The mass of a link, and its centre in the link's frame."""
-    stated = linkage.masses.get(link)
+def _mass(linkage: Linkage, link: str) -> tuple[float, complex, float]:
+    """The mass of a link, its centre in the link's frame, and its inertia about that."""
+    stated, numbers = linkage.masses.get(link), linkage.numbers
     if stated is None:
-        return 0.0, 0j
-    mass = linkage.numbers(stated.mass)
-    if stated.shape is not None:
-        return mass, complex(_rod(linkage, link) / 2.0)
-    return mass, complex(*map(linkage.numbers, stated.center or (0.0, 0.0)))
-
-
-def _inertia(linkage: Linkage, link: str) -> float:
-    stated = linkage.masses.get(link)
-    if stated is None:
-        return 0.0
-    if stated.shape is not None:
-        return float(linkage.numbers(stated.mass) * _rod(linkage, link) ** 2 / 12.0)
-    return float(linkage.numbers(stated.inertia))
-
-
-def _rod(linkage: Linkage, link: str) -> float:
+        return 0.0, 0j, 0.0
+    mass = numbers(stated.mass)
+    if stated.shape is None:
+        return mass, complex(*map(numbers, stated.center or (0.0, 0.0))), numbers(stated.inertia)
     first, second = linkage.links[link][:2]
-    return float(np.abs(_local(linkage, link, second) - _local(linkage, link, first)))
+    length = abs(_local(linkage, link, second) - _local(linkage, link, first))
+    return mass, complex(length / 2.0), mass * length**2 / 12.0
 
 
 def counterweights(mechanism: Mechanism, radius: float | Mapping[str, float]) -> Counterweights:
@@ -184,7 +140,7 @@ def counterweights(mechanism: Mechanism, radius: float | Mapping[str, float]) ->
     Raises
     ------
     InputError
-        If it is no four-bar with pins and masses.
+        If it is no four-bar with pins and masses, or a radius is not positive.
 
     Examples
     --------
@@ -193,7 +149,21 @@ def counterweights(mechanism: Mechanism, radius: float | Mapping[str, float]) ->
     >>> [weight.link for weight in lw.design.counterweights(bar, radius=20).weights]
     ['crank', 'rocker']
     """
-    return counterweights_of(_linkage(mechanism), radius)
+    linkage = _linkage(mechanism)
+    weights = tuple(_weights(linkage, radius))
+    (force, moment), (force_after, moment_after) = (
+        _shaking(each) for each in (linkage, _balanced(linkage, weights))
+    )
+    mass, length, unit = linkage.mass, linkage.length, linkage.force
+    return Counterweights(
+        weights=weights,
+        force=(force, force_after),
+        moment=(moment, moment_after),
+        units={
+            "mass": mass, "product": f"{mass}·{length}", "force": unit,
+            "moment": f"{unit}·{length}",
+        },
+    )  # fmt: skip
 
 
 def balanced(mechanism: Mechanism, radius: float | Mapping[str, float]) -> Mechanism:
@@ -217,7 +187,7 @@ def balanced(mechanism: Mechanism, radius: float | Mapping[str, float]) -> Mecha
     ['coupler', 'crank', 'rocker']
     """
     linkage = _linkage(mechanism)
-    return Mechanism(balanced_linkage(linkage, counterweights_of(linkage, radius).weights))
+    return Mechanism(_balanced(linkage, tuple(_weights(linkage, radius))))
 
 
 def _linkage(mechanism: Mechanism) -> Linkage:

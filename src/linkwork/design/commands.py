@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import asdict, is_dataclass
 from pathlib import Path
 from typing import Any
@@ -39,13 +39,18 @@ from linkwork.core.commands.terminal import (
     table_lines,
     title_lines,
 )
+from linkwork.core.foundation.arrays import Array
 from linkwork.core.foundation.errors import InputError
 from linkwork.core.results.listing.motion_listing import Column, short, significant
 from linkwork.core.results.motion import Motion
-from linkwork.core.results.tables import driven_text
-from linkwork.design.listing import contribution_columns, sampled_fields, tolerance_fields
 from linkwork.design.sensitivities import is_of_motion
-from linkwork.design.tolerance_results import Sensitivity, SensitivityStatus, Tolerance
+from linkwork.design.tolerance_results import (
+    Sensitivity,
+    SensitivityStatus,
+    Tolerance,
+    contribution_columns,
+    tolerance_fields,
+)
 
 # ----------------------------------------------------------------------
 # Sensitivities and tolerances as pages of text.
@@ -53,29 +58,22 @@ from linkwork.design.tolerance_results import Sensitivity, SensitivityStatus, To
 
 def sensitivity_lines(result: Sensitivity) -> list[str]:
     """The derivatives by number, the largest first."""
-    lines = title_lines(result.mechanism)
-    rows = result.value.ndim > 0
-    at = {} if rows else {name: float(value) for name, value in result.inputs.items()}
-    where = f"at {driven_text(at, result.input_units)}" if at else ""
-    if rows:
-        where = f"in {len(result)} positions"
-    counts = Counter(status for status in result.statuses if status is not SensitivityStatus.FOUND)
-    if len(counts) and SensitivityStatus.FOUND not in result.statuses and not rows:
+    lines, rows = title_lines(result.mechanism), result.value.ndim > 0
+    where = f"in {len(result)} positions" if rows else result.where and f"at {result.where}"
+    counts = Counter(result.statuses)
+    found = counts.pop(SensitivityStatus.FOUND, 0)
+    if rows or found:
+        lines += sentence(good, f"Sensitivity of {result.of}", where)
+    else:
         lines += sentence(bad, f"No sensitivity of {result.of}", where)
         lines += fields([("why", result.status.value)])
         if result.status is not SensitivityStatus.CORNER:
             return lines
+    if rows:
+        others = [(status.label, f"{count}: {status.value}") for status, count in counts.items()]
+        lines += fields([("found", str(found)), *others])
     else:
-        lines += sentence(good, f"Sensitivity of {result.of}", where)
-    if not rows:
         lines += fields([("value", f"{short(float(result.value))} {result.unit}".rstrip())])
-    else:
-        lines += fields([("found", str(result.statuses.count(SensitivityStatus.FOUND)))])
-        lines += (
-            fields([(status.label, f"{count}: {status.value}") for status, count in counts.items()])
-            if counts
-            else []
-        )
     names = result.effective
     if names:
         lines += ["", *_table(result, names, rows)]
@@ -106,12 +104,11 @@ def _table(sensitivity: Sensitivity, names: tuple[str, ...], rows: bool) -> list
             units=[sensitivity.units[name] for name in names],
         ),
     ]
-    if not rows:
-        cells = [significant(float(sensitivity.derivatives[name])) for name in names]
-        columns.append(Column(header="derivative", cells=cells, align="point", units=units))
-        return table_lines(columns)
-    for header, extreme in (("smallest", np.fmin.reduce), ("largest", np.fmax.reduce)):
-        cells = [significant(float(extreme(sensitivity.derivatives[name]))) for name in names]
+    shown: dict[str, Callable[[Array], Any]] = {"derivative": np.asarray}
+    if rows:
+        shown = {"smallest": np.fmin.reduce, "largest": np.fmax.reduce}
+    for header, of_rows in shown.items():
+        cells = [significant(float(of_rows(sensitivity.derivatives[name]))) for name in names]
         columns.append(Column(header=header, cells=cells, align="point", units=units))
     return table_lines(columns)
 
@@ -133,19 +130,15 @@ def sensitivity_data(sensitivity: Sensitivity) -> dict[str, Any]:
 
 def tolerance_lines(tolerance: Tolerance) -> list[str]:
     """Worst case, root sum square, and the share of each number and pin."""
-    lines = title_lines(tolerance.mechanism)
     where = f"at {tolerance.where}" if tolerance.where else ""
-    if tolerance.status is not SensitivityStatus.FOUND:
-        lines += sentence(bad, f"No tolerance of {tolerance.of}", where)
-        lines += fields([("why", tolerance.status.value)])
-        return [*lines, *_sampled(tolerance)]
-    lines += sentence(good, f"Tolerance of {tolerance.of}", where)
-    lines += [*fields(tolerance_fields(tolerance)), *_sampled(tolerance)]
-    return [*lines, "", *table_lines(contribution_columns(tolerance))]
-
-
-def _sampled(tolerance: Tolerance) -> list[str]:
-    return [] if tolerance.sampled is None else fields(sampled_fields(tolerance))
+    is_found = tolerance.status is SensitivityStatus.FOUND
+    style, head = (good, "Tolerance") if is_found else (bad, "No tolerance")
+    lines = [
+        *title_lines(tolerance.mechanism),
+        *sentence(style, f"{head} of {tolerance.of}", where),
+        *fields(tolerance_fields(tolerance)),
+    ]
+    return [*lines, "", *table_lines(contribution_columns(tolerance))] if is_found else lines
 
 
 def tolerance_data(tolerance: Tolerance) -> dict[str, Any]:
@@ -336,7 +329,7 @@ def design_command(
         raise InputError("--save writes the mechanism with its --counterweights")
     check_outputs(file, options["save"])
     mechanism = read_mechanism(file, changes)
-    answers = dict(_answers(mechanism, options, input_values(mechanism, at), configuration))
+    answers = _answers(mechanism, options, input_values(mechanism, at), configuration)
     if not answers:
         raise InputError(
             "no option is set: add --flywheel, --motor, --harmonics, --counterweights or "
@@ -357,44 +350,33 @@ def design_command(
 
 def _answers(
     mechanism: Mechanism,
-    options: dict[str, Any],
+    options: Mapping[str, Any],
     at: dict[str, float] | None,
     configuration: str | None,
-) -> Iterator[tuple[str, Any]]:
+) -> dict[str, Any]:
     """The requested results by the names of their options."""
+    given = {name: value for name, value in options.items() if value not in (None, ())}
     motion: Motion | None = None
-    if any(options[name] for name in ("flywheel", "motor", "harmonics")):
+    if given.keys() & {"flywheel", "motor", "harmonics"}:
         with progress("sweeping") as tell:
             motion = mechanism.sweep(configuration=configuration, progress=tell)
-    if options["flywheel"] is not None:
-        yield "flywheel", design.flywheel(mechanism, options["flywheel"], motion=motion)
-    if options["motor"]:
-        stall, speed = options["motor"]
-        yield (
-            "motor",
-            design.motor_check(
-                mechanism,
-                stall=_number(stall),
-                free_speed=speed,
-                rated=options["rated"],
-                motion=motion,
-            ),
-        )
-    if options["harmonics"] is not None:
-        yield (
-            "harmonics",
-            design.harmonics(mechanism, options["harmonics"], options["count"], motion=motion),
-        )
-    if options["counterweights"] is not None:
-        with progress("balancing"):
-            yield "counterweights", design.counterweights(mechanism, options["counterweights"])
-    if options["inflection"] is not None:
-        yield (
-            "inflection",
-            design.inflection_circle(
-                mechanism, options["inflection"], at, configuration=configuration
-            ),
-        )
+    answers: dict[str, Callable[[Any], Any]] = {
+        "flywheel": lambda value: design.flywheel(mechanism, value, motion=motion),
+        "motor": lambda value: design.motor_check(
+            mechanism,
+            stall=_number(value[0]),
+            free_speed=value[1],
+            rated=options["rated"],
+            motion=motion,
+        ),
+        "harmonics": lambda of: design.harmonics(mechanism, of, options["count"], motion=motion),
+        "counterweights": lambda radius: design.counterweights(mechanism, radius),
+        "inflection": lambda link: design.inflection_circle(
+            mechanism, link, at, configuration=configuration
+        ),
+    }
+    with progress("computing"):
+        return {name: answer(given[name]) for name, answer in answers.items() if name in given}
 
 
 def _number(text: str) -> float:

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
 
 import numpy as np
 
@@ -34,41 +33,8 @@ _EVEN = 1e-9  # of a turn: rounding of the table
 _EQUAL = 1e-12  # of the size: extremes that differ less are equal
 
 
-@dataclass(frozen=True, kw_only=True, eq=False)
-class Cycle:
-    """A quantity over a cycle: in the M + 1 rows of the table, and between them.
-
-    Parameters
-    ----------
-    place : (M + 1,)
-        The input, or the time of a law [rad], [length] or [s].
-    value : (M + 1,)
-        The quantity [file unit].
-    curve : Piecewise
-        The quantity between the rows, jumps and corners included.
-    """
-
-    place: Array
-    value: Array
-    curve: Piecewise
-
-
-def column_of(model: Model, what: str) -> str:
-    """The only input of a mechanism; ``what`` needs it.
-
-    Raises
-    ------
-    InputError
-        For several inputs, or none.
-    """
-    inputs = model.description.inputs
-    if len(inputs) != 1:
-        raise InputError(f"{what} needs one input, the mechanism has {len(inputs)}")
-    return inputs[0].column
-
-
-def whole_turn(model: Model, motion: Motion, name: str) -> Cycle:
-    """A quantity over one turn of the only input.
+def whole_turn(model: Model, motion: Motion, name: str) -> Piecewise:
+    """A quantity over one turn of the only input [rad], jumps and corners included.
 
     Raises
     ------
@@ -99,8 +65,8 @@ def whole_turn(model: Model, motion: Motion, name: str) -> Cycle:
     return cycle(model, motion, lambda rows: quantity.values(rows, motion.speed), name)
 
 
-def cycle(model: Model, motion: Motion, of: Callable[[Solved], Array], name: str) -> Cycle:
-    """A quantity over the table of a motion, whatever that is.
+def cycle(model: Model, motion: Motion, of: Callable[[Solved], Array], name: str) -> Piecewise:
+    """A quantity over the table of a motion, whatever that is: by the input, or the time of a law.
 
     Raises
     ------
@@ -114,9 +80,7 @@ def cycle(model: Model, motion: Motion, of: Callable[[Solved], Array], name: str
     curve = piecewise(model, motion, of)
     if not np.isfinite(curve.panels.coefficients).all():
         raise InputError(f'"{name}" has no value at some places between the rows')
-    lead = model.motion_quantities.names.lead
-    scale = float(model.input_scale[list(motion.inputs).index(lead)])
-    return Cycle(place=np.asarray(motion.inputs[lead]) * scale, value=value, curve=curve)
+    return curve
 
 
 def first_extreme(places: Array, values: Array) -> tuple[float, float]:
@@ -165,7 +129,7 @@ def flywheel(mechanism: Mechanism, fluctuation: float, *, motion: Motion | None 
     speed, lead = model.speed, model.motion_quantities.names.lead
     if not speed:
         raise InputError('a flywheel needs the speed of the input: speed = "300 rpm"')
-    curve = whole_turn(model, motion, effort_name(lead)).curve
+    curve = whole_turn(model, motion, effort_name(lead))
     mean = curve.mean()
     # power in is positive along the motion, also of an input that turns backwards
     angle, energy = curve.missing(mean)
@@ -235,14 +199,17 @@ def motor_check(
     """
     model = mechanism.model
     motion = mechanism.sweep() if motion is None else motion
-    column, timed = column_of(model, "a motor check"), model.description.timed
+    inputs, timed = model.description.inputs, model.description.timed
+    if len(inputs) != 1:
+        raise InputError(f"a motor check needs one input, the mechanism has {len(inputs)}")
+    column = inputs[0].column
     driven = model.untimed or model
     kind, scale = driven.motion_quantities.names.inputs[column], float(driven.input_scale[0])
     if not model.speed:
         raise InputError('a motor needs the speed of the input: speed = "300 rpm"')
     if motor is None and stall is not None:
         motor = Motor(stall=stall, free_speed=free_speed)
-    motor = motor or model.description.inputs[0].motor
+    motor = motor or inputs[0].motor
     if motor is None:
         raise InputError("there is no motor: add motor to the input, or give stall and free_speed")
     effort = motion.quantity(effort_name(column))
@@ -267,15 +234,15 @@ def motor_check(
         if timed
         else whole_turn(model, motion, effort.name)
     )
-    places, values = turn.curve.extremes()
+    places, values = turn.extremes()
     peak_at, peak = first_extreme(places, np.abs(values))
     left, spent = (piecewise(model, motion, of).extremes()[1] for of in (reserve, power))
     at_peak = between_rows(model, motion)(np.array([peak_at]))
     return MotorCheck(
         peak=peak,
         peak_at=peak_at / (1.0 if timed else scale),
-        rms=math.sqrt(turn.curve.mean(power=2)),
-        mean=turn.curve.mean(),
+        rms=math.sqrt(turn.mean(power=2)),
+        mean=turn.mean(),
         available=float(curve(np.abs(speeds(at_peak)))[0]),
         reserve=float(left.min()),
         rated=rated,
@@ -343,14 +310,17 @@ def harmonics(
     model = mechanism.model
     motion = mechanism.sweep() if motion is None else motion
     turn = whole_turn(model, motion, of)
-    rows = len(turn.value) - 1
+    value = np.asarray(motion[of])[:-1]
+    lead = model.motion_quantities.names.lead
+    angle = np.asarray(motion.inputs[lead])[:-1] * model.units.scale(Kind.ANGLE)
+    rows = len(value)
     if not 1 <= count < rows / 2.0:
         raise InputError(f"{rows} rows of a turn give from 1 to {(rows - 1) // 2} harmonics")
     orders = np.arange(1, count + 1)
     # eq. (79)
-    parts = 2.0 * np.array([turn.curve.wave(order) for order in orders.tolist()])
-    mean = turn.curve.mean()
-    waves = np.exp(1j * orders[:, None] * turn.place[None, :-1])
+    parts = 2.0 * np.array([turn.wave(order) for order in orders.tolist()])
+    mean = turn.mean()
+    waves = np.exp(1j * orders[:, None] * angle)
     total = mean + (parts[:, None] * waves).real.sum(axis=0)
     period = 360.0 / orders
     return Harmonics(
@@ -359,7 +329,7 @@ def harmonics(
         mean=mean,
         amplitude=np.abs(parts),
         phase=np.mod(np.degrees(np.angle(parts.conj())) / orders, period),
-        rest=float(np.max(np.abs(turn.value[:-1] - total))),
+        rest=float(np.max(np.abs(value - total))),
     )
 
 

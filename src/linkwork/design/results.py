@@ -7,6 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from linkwork import wings
 from linkwork.core.foundation.arrays import Array
 from linkwork.core.foundation.containers import read_only
 from linkwork.core.foundation.errors import internal
@@ -16,8 +17,24 @@ _NONE = 1e-12  # of a quantity: rounding
 
 
 @internal("summary")
+class Summarized:
+    """A result with a summary, for terminals and notebooks."""
+
+    @property
+    def summary(self) -> Summary:
+        """A title and rows of text."""
+        raise NotImplementedError
+
+    def __repr__(self) -> str:
+        return str(self.summary)
+
+    def _repr_html_(self) -> str:
+        """A short table, for notebooks."""
+        return wings.use("app.pages.notebook").summary_html(self.summary)
+
+
 @dataclass(frozen=True, kw_only=True, repr=False)
-class Flywheel:
+class Flywheel(Summarized):
     """The inertia that keeps the speed of an input even.
 
     Parameters
@@ -51,9 +68,6 @@ class Flywheel:
     fastest: float
     units: Mapping[str, str]
 
-    def __repr__(self) -> str:
-        return str(self.summary)
-
     @property
     def summary(self) -> Summary:
         """A title and rows of text."""
@@ -68,9 +82,8 @@ class Flywheel:
         return Summary(f"Flywheel for a fluctuation of {self.fluctuation:g}", rows)
 
 
-@internal("summary")
 @dataclass(frozen=True, kw_only=True, repr=False)
-class MotorCheck:
+class MotorCheck(Summarized):
     """A motor against the effort of an input at constant speed.
 
     Parameters
@@ -115,9 +128,6 @@ class MotorCheck:
         enough = self.reserve >= -_NONE * self.peak
         return enough and (self.rated is None or self.rms <= self.rated)
 
-    def __repr__(self) -> str:
-        return str(self.summary)
-
     @property
     def summary(self) -> Summary:
         """A title and rows of text."""
@@ -135,9 +145,8 @@ class MotorCheck:
         return Summary(f"The motor {'fits' if self.fits else 'is too weak'}", tuple(rows))
 
 
-@internal("summary")
 @dataclass(frozen=True, kw_only=True, eq=False, repr=False)
-class Harmonics:
+class Harmonics(Summarized):
     """The Fourier sum of a quantity over a turn: mean + Σ a_k cos(k (φ - φ_k)).
 
     Parameters
@@ -170,9 +179,6 @@ class Harmonics:
     def __post_init__(self) -> None:
         for name in ("amplitude", "phase"):
             object.__setattr__(self, name, read_only(getattr(self, name)))
-
-    def __repr__(self) -> str:
-        return str(self.summary)
 
     @property
     def summary(self) -> Summary:
@@ -217,9 +223,8 @@ class Counterweight:
     place: tuple[float, float]
 
 
-@internal("summary")
 @dataclass(frozen=True, kw_only=True, repr=False)
-class Counterweights:
+class Counterweights(Summarized):
     """Two counterweights that remove the shaking force of a four-bar.
 
     Parameters
@@ -244,9 +249,6 @@ class Counterweights:
     moment: tuple[float, float]
     units: Mapping[str, str]
 
-    def __repr__(self) -> str:
-        return str(self.summary)
-
     @property
     def summary(self) -> Summary:
         """A title and rows of text."""
@@ -261,9 +263,8 @@ class Counterweights:
         return Summary("Counterweights", tuple(rows))
 
 
-@internal("summary")
 @dataclass(frozen=True, kw_only=True, repr=False)
-class InflectionCircle:
+class InflectionCircle(Summarized):
     """The points of a link whose paths have no curvature at a position.
 
     Parameters
@@ -298,9 +299,6 @@ class InflectionCircle:
     def diameter(self) -> float:
         """Its diameter."""
         return float(np.hypot(*np.subtract(self.inflection_pole, self.pole)))
-
-    def __repr__(self) -> str:
-        return str(self.summary)
 
     @property
     def summary(self) -> Summary:

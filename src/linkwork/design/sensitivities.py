@@ -40,27 +40,14 @@ def is_of_motion(of: str) -> bool:
     return "(" in of or of.strip() in LIMITS
 
 
-def sensitivity_of_position(
-    model: Model, position: Position, of: str, by: Iterable[str] | None = None
-) -> Sensitivity:
-    """The derivatives of a quantity at one position.
-
-    Raises
-    ------
-    UnknownNameError, InputError
-        For a name that is not known, or a number that cannot vary.
-    """
-    inputs = {name: np.asarray(value) for name, value in position.input.items()}
-    return _of_rows(model, row_of(model, position), inputs, of, by, ())
-
-
-def play_of_position(
-    model: Model, position: Position, of: str, pins: Sequence[tuple[str, str]]
+def play_of(
+    model: Model, solved: Position | Motion, of: str, pins: Sequence[tuple[str, str]]
 ) -> Array:
     """The derivatives of a quantity by the displacement of points of links from their pins.
 
     Their size is the force in the pin for a unit load at the quantity with the input held, eq.
-    (124).
+    (124). Of a number of a motion a journal may lie differently in each row on which an extreme
+    depends; where rates enter, such as in the length of a path, it stays where it is in all rows.
 
     Parameters
     ----------
@@ -68,56 +55,51 @@ def play_of_position(
 
     Returns
     -------
-    array (pins, 1, 2)
+    array (pins, rows, 2)
+        Of a position one row.
     """
-    quantity, row = model.quantities.find(of), row_of(model, position)
-    v = np.where((row.found & row.regular)[:, None], row.v, np.nan)
-    taped = LoadedRows(model, (), v, quantity.needs, pins)
+    if isinstance(solved, Motion):
+        _, _, parts = _number_and_parts(model, solved, of)
+        plays = []
+        for part in parts:
+            rates = part.rates(model, (), pins)
+            moved = rates.reshape(len(pins), 2, rates.shape[1]).swapaxes(1, 2)
+            plays.append(moved if part.depends_on_values else moved.sum(axis=1, keepdims=True))
+        return np.concatenate(plays, axis=1) if plays else np.zeros((len(pins), 0, 2))
+    quantity, row = model.quantities.find(of), row_of(model, solved)
+    taped = LoadedRows(model, (), row.differentiable, quantity.needs, pins)
     with np.errstate(all="ignore"):
         # R of eq. (124)
         rates = taped.tape.backward(quantity.values(taped, taped.speed))
     return np.broadcast_to(rates, (2 * len(pins), 1)).reshape(len(pins), 1, 2)
 
 
-def play_of_motion(model: Model, motion: Motion, of: str, pins: Sequence[tuple[str, str]]) -> Array:
-    """As :func:`play_of_position`, of a number of a motion, (pins, rows, 2).
-
-    A journal may lie differently in each row on which an extreme depends; where rates enter, such
-    as in the length of a path, it stays where it is in all rows.
-    """
-    _, _, parts = _number_and_parts(model, motion, of)
-    plays = []
-    for part in parts:
-        rates = part.rates(model, (), pins)
-        moved = rates.reshape(len(pins), 2, rates.shape[1]).swapaxes(1, 2)
-        plays.append(moved if part.depends_on_values else moved.sum(axis=1, keepdims=True))
-    return np.concatenate(plays, axis=1) if plays else np.zeros((len(pins), 0, 2))
-
-
-def sensitivity_of_rows(
-    model: Model, motion: Motion, of: str, by: Iterable[str] | None = None
+def sensitivity_of(
+    model: Model, solved: Position | Motion, of: str, by: Iterable[str] | None = None
 ) -> Sensitivity:
-    """The derivatives of a quantity in all rows of a motion; raises like
-    :func:`sensitivity_of_position`.
+    """The derivatives of a quantity at a position or in all rows of a motion, or of a number of a
+    motion.
+
+    Raises
+    ------
+    UnknownNameError, InputError
+        For a name that is not known, a number that cannot vary, or one whose derivatives are not
+        known.
     """
-    rows = rows_of(model, motion)
-    return _of_rows(model, rows, motion.inputs, of, by, (len(motion),))
-
-
-def _of_rows(
-    model: Model,
-    rows: RegularRows,
-    inputs: Mapping[str, AnyArray],
-    of: str,
-    by: Iterable[str] | None,
-    shape: tuple[int, ...],
-) -> Sensitivity:
+    shape: tuple[int, ...] = ()
+    inputs: Mapping[str, AnyArray]
+    if isinstance(solved, Motion):
+        if is_of_motion(of):
+            return _of_motion(model, solved, of, by)
+        rows, inputs, shape = rows_of(model, solved), solved.inputs, (len(solved),)
+    else:
+        rows = row_of(model, solved)
+        inputs = {name: np.asarray(value) for name, value in solved.input.items()}
     named = model.quantities.find(of)
     _check(named, of)
     named.check_rate(model.speed)
     numbers, refused = _fitting_numbers(model, rows, by)
-    # rows without a derivative would spoil the inverses of other rows
-    v = np.where((rows.found & rows.regular)[:, None], rows.v, np.nan)
+    v = rows.differentiable
     derivatives: dict[str, Array] = {}
     for group in groups_of(model.description, numbers):
         taped = LoadedRows(model, group, v, named.needs)
@@ -126,7 +108,7 @@ def _of_rows(
         each = (len(group), len(v))
         rates = np.broadcast_to(rates, each) + _fitting(taped, each)
         derivatives |= dict(zip((q.name for q in group), rates, strict=True))
-    value = np.broadcast_to(np.atleast_1d(named.values(rows.solved, model.speed)), len(v))
+    value = np.broadcast_to(np.atleast_1d(named.values(solved, model.speed)), len(v))
     status = np.full(len(v), SensitivityStatus.FOUND.code)
     corner = np.isnan(value)
     for name, rates in derivatives.items():
@@ -212,17 +194,10 @@ def _result(
 # Numbers of a whole motion
 
 
-def sensitivity_of_motion(
-    model: Model, motion: Motion, of: str, by: Iterable[str] | None = None
-) -> Sensitivity:
+def _of_motion(model: Model, motion: Motion, of: str, by: Iterable[str] | None) -> Sensitivity:
     """The derivatives of a number of a whole motion: ``stroke(d)``, ``limit.upper``.
 
     Extremes need no derivative of the place where they are, except at dead points, which move.
-
-    Raises
-    ------
-    UnknownNameError, InputError
-        As :func:`sensitivity_of_position`; also for a number whose derivatives are not known.
     """
     numbers, refused = _fitting_numbers(model, rows_of(model, motion), by)
     value, unit, parts = _number_and_parts(model, motion, of)
@@ -389,15 +364,14 @@ def sensitivity(
     >>> found.effective[0], round(found["B A"], 6)
     ('B A', 1.123196)
     """
+    solved: Position | Motion
     if at is None and (mechanism.description.inputs or motion is not None or is_of_motion(of)):
-        rows = mechanism.sweep(configuration=configuration) if motion is None else motion
-        if is_of_motion(of):
-            return sensitivity_of_motion(mechanism.model, rows, of, by)
-        return sensitivity_of_rows(mechanism.model, rows, of, by)
-    if is_of_motion(of):
+        solved = mechanism.sweep(configuration=configuration) if motion is None else motion
+    elif is_of_motion(of):
         raise InputError(f'"{of}" is a number of a whole motion: leave out at')
-    position = mechanism.solve(at, configuration=configuration)
-    return sensitivity_of_position(mechanism.model, position, of, by)
+    else:
+        solved = mechanism.solve(at, configuration=configuration)
+    return sensitivity_of(mechanism.model, solved, of, by)
 
 
 def gradient(

@@ -3,18 +3,19 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 
 import numpy as np
 
-from linkwork import wings
 from linkwork.core.foundation.arrays import AnyArray, Array
 from linkwork.core.foundation.containers import FrozenDict, read_only
 from linkwork.core.foundation.errors import UnknownNameError, choices
 from linkwork.core.foundation.names import find_spelling
 from linkwork.core.foundation.statuses import CodedEnum
+from linkwork.core.results.listing.motion_listing import Column, fixed, short, significant
 from linkwork.core.results.tables import Summary, Table, driven_text
+from linkwork.design.results import Summarized
 
 # ----------------------------------------------------------------------
 # Sensitivities: how much a quantity changes with each number of a mechanism.
@@ -46,7 +47,7 @@ class SensitivityStatus(CodedEnum):
 
 
 @dataclass(frozen=True, kw_only=True, eq=False, repr=False)
-class Sensitivity:
+class Sensitivity(Summarized):
     """The derivatives of a quantity by numbers of a mechanism, at one position, in the R rows of a
     motion, or of a number of the whole motion.
 
@@ -147,12 +148,29 @@ class Sensitivity:
         units["status"] = ""
         return Table(columns=columns, units=units, index=next(iter(columns)))
 
-    def __repr__(self) -> str:
-        return str(sensitivity_summary(self))
+    @property
+    def summary(self) -> Summary:
+        """The derivatives, the largest first."""
+        rows = []
+        if self.status is not SensitivityStatus.FOUND:
+            rows.append(("status", self.status.value))
+        # without a position there is nothing but the reason
+        names = self.effective if np.isfinite(self.value).any() else ()
+        for name in names:
+            value, unit = self.derivatives[name], self.unit_by(name)
+            most = value.item() if value.ndim == 0 else _size(value)
+            many = "" if value.ndim == 0 else "at most "
+            rows.append((name, f"{many}{most:.6g} {unit}".rstrip()))
+        at = f" at {self.where}" if self.where else ""
+        return Summary(f"Sensitivity of {self.of} of {self.mechanism}{at}", tuple(rows))
 
-    def _repr_html_(self) -> str:
-        """A short table, for notebooks."""
-        return wings.use("app.pages.notebook").sensitivity_html(self)
+    @property
+    def where(self) -> str:
+        """The inputs of a single position as text, else ""."""
+        if not self.inputs or self.value.ndim:
+            return ""
+        at = {name: float(value) for name, value in self.inputs.items()}
+        return driven_text(at, self.input_units)
 
 
 def _size(rows: Array) -> float:
@@ -170,24 +188,6 @@ def per(unit: str, other: str) -> str:
     if not other:
         return unit
     return f"{unit or '1'}/{other}"
-
-
-def sensitivity_summary(result: Sensitivity) -> Summary:
-    """The derivatives, the largest first, for terminals."""
-    rows = []
-    if result.status is not SensitivityStatus.FOUND:
-        rows.append(("status", result.status.value))
-    # without a position there is nothing but the reason
-    names = result.effective if np.isfinite(result.value).any() else ()
-    for name in names:
-        value, unit = result.derivatives[name], result.unit_by(name)
-        most = value.item() if value.ndim == 0 else _size(value)
-        rows.append((name, f"{'' if value.ndim == 0 else 'at most '}{most:.6g} {unit}".rstrip()))
-    where = ""
-    if result.inputs and result.value.ndim == 0:
-        at = {name: float(value) for name, value in result.inputs.items()}
-        where = f" at {driven_text(at, result.input_units)}"
-    return Summary(f"Sensitivity of {result.of} of {result.mechanism}{where}", tuple(rows))
 
 
 # ----------------------------------------------------------------------
@@ -234,6 +234,11 @@ class Contribution:
     standard: float
     share: float
 
+    @property
+    def number(self) -> str:
+        """The number or pin in words."""
+        return self.name if self.kind == "dimension" else f"pin {self.name}"
+
 
 @dataclass(frozen=True, kw_only=True)
 class Sampled:
@@ -271,7 +276,7 @@ class Sampled:
 
 
 @dataclass(frozen=True, kw_only=True, repr=False)
-class Tolerance:
+class Tolerance(Summarized):
     """The tolerance of a quantity at one position, or of a number of a whole motion.
 
     Parameters
@@ -345,31 +350,47 @@ class Tolerance:
         units = dict.fromkeys(columns, "") | {"worst": self.unit, "standard": self.unit}
         return Table(columns=columns, units=units, index="name")
 
-    def __repr__(self) -> str:
-        return str(tolerance_summary(self))
+    @property
+    def summary(self) -> Summary:
+        """The tolerance and its largest contributions."""
+        at = f" at {self.where}" if self.where else ""
+        rows = [*tolerance_fields(self)]
+        if self.status is SensitivityStatus.FOUND:
+            rows += [(part.number, f"{100 * part.share:.1f} %") for part in self.contributions]
+        return Summary(f"Tolerance of {self.of} of {self.mechanism}{at}", tuple(rows))
 
-    def _repr_html_(self) -> str:
-        """A short table, for notebooks."""
-        return wings.use("app.pages.notebook").tolerance_html(self)
 
-
-def tolerance_summary(tolerance: Tolerance) -> Summary:
-    """The tolerance and its largest contributions, for terminals."""
-    at = f" at {tolerance.where}" if tolerance.where else ""
-    head = f"Tolerance of {tolerance.of} of {tolerance.mechanism}{at}"
-    if tolerance.status is not SensitivityStatus.FOUND:
-        return Summary(head, (("status", tolerance.status.value),))
+def tolerance_fields(tolerance: Tolerance) -> Iterator[tuple[str, str]]:
+    """Value, worst case and standard deviation, or why there are none; then random designs."""
     unit = tolerance.unit
-    rows = [
-        ("value", f"{tolerance.value:.10g} {unit}".rstrip()),
-        ("worst case", f"± {tolerance.worst_case:.6g} {unit}".rstrip()),
-        ("root sum square", f"{tolerance.root_sum_square:.6g} {unit}".rstrip()),
+    if tolerance.status is SensitivityStatus.FOUND:
+        yield "value", f"{short(tolerance.value)} {unit}".rstrip()
+        yield "worst case", f"± {significant(tolerance.worst_case)} {unit}".rstrip()
+        yield "root sum square", f"{significant(tolerance.root_sum_square)} {unit}".rstrip()
+    else:
+        yield "why", tolerance.status.value
+    if (drawn := tolerance.sampled) is not None:
+        yield (
+            "sampled",
+            f"deviation {significant(drawn.deviation)} ± {significant(drawn.error, 2)} {unit}, "
+            f"mean {short(drawn.mean)} {unit}, from {short(drawn.low)} to {short(drawn.high)} "
+            f"{unit}; {drawn.found} of {drawn.designs} found, seed {drawn.seed}",
+        )
+
+
+def contribution_columns(tolerance: Tolerance) -> list[Column]:
+    """The share of each number and pin."""
+    parts = tolerance.contributions
+
+    def column(header: str, cells: list[str], units: list[str] | None = None) -> Column:
+        return Column(header=header, cells=cells, align="point", units=units or ())
+
+    deviations = [short(part.deviation) for part in parts]
+    sensitivities = [significant(part.sensitivity) for part in parts]
+    return [
+        Column(header="number", cells=[part.number for part in parts]),
+        column("deviation", deviations, [part.deviation_unit for part in parts]),
+        column("sensitivity", sensitivities, [part.unit for part in parts]),
+        column("change", [significant(p.worst) for p in parts], [tolerance.unit] * len(parts)),
+        column("share %", [fixed(100.0 * part.share, 1) for part in parts]),
     ]
-    if tolerance.sampled is not None:
-        drawn = tolerance.sampled
-        rows.append(("sampled", f"{drawn.deviation:.6g} {unit}, {drawn.found} designs"))
-    rows += [
-        (part.name if part.kind == "dimension" else f"pin {part.name}", f"{100 * part.share:.1f} %")
-        for part in tolerance.contributions
-    ]
-    return Summary(head, tuple(rows))

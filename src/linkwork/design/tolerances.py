@@ -25,14 +25,7 @@ from linkwork.core.mechanism.varied_numbers import (
 from linkwork.core.motion.model import Model, model_of
 from linkwork.core.results.motion import Motion
 from linkwork.core.results.position import Position
-from linkwork.design.sensitivities import (
-    LIMITS,
-    is_of_motion,
-    play_of_motion,
-    play_of_position,
-    sensitivity_of_motion,
-    sensitivity_of_position,
-)
+from linkwork.design.sensitivities import LIMITS, is_of_motion, play_of, sensitivity_of
 from linkwork.design.tolerance_results import (
     Contribution,
     Sampled,
@@ -52,10 +45,10 @@ class Deviations:
     clearances: Mapping[str, float]
 
 
-def stated_deviations(
+def _stated_deviations(
     model: Model,
-    numbers: Mapping[str, float] | None = None,
-    clearances: Mapping[str, float] | None = None,
+    numbers: Mapping[str, float] | None,
+    clearances: Mapping[str, float] | None,
 ) -> Deviations:
     """The stated deviations and clearances, or those of the file.
 
@@ -98,54 +91,6 @@ def _size(name: str, value: float) -> float:
     return size
 
 
-def tolerance_of(
-    model: Model,
-    solved: Position | Motion,
-    of: str,
-    deviations: Deviations,
-    *,
-    samples: int = 0,
-    seed: int = 1,
-) -> Tolerance:
-    """The tolerance of a quantity at a position, or of a number of a motion.
-
-    Raises
-    ------
-    UnknownNameError, InputError
-        For a quantity that is not known, or whose derivatives are not.
-    """
-    count, start = whole_number("samples", samples), whole_number("seed", seed)
-    names = [number.name for number in deviations.numbers]
-    pins = tuple((link, p) for p in deviations.clearances for link in pins_of(model.description)[p])
-    if isinstance(solved, Motion):
-        result = sensitivity_of_motion(model, solved, of, names)
-        moved = play_of_motion(model, solved, of, pins)
-    else:
-        result = sensitivity_of_position(model, solved, of, names)
-        moved = play_of_position(model, solved, of, pins)
-    forces = _pin_forces(pins, moved)
-    parts = list(_contributions(model, result, deviations, forces))
-    total = math.fsum(part.standard**2 for part in parts)
-    status = result.status
-    if status is SensitivityStatus.FOUND and not math.isfinite(total):
-        status = SensitivityStatus.CORNER
-    shared = [_with_share(part, total) for part in parts]
-    sampled = None
-    if count and status is not SensitivityStatus.NO_POSITION:
-        sampled = _sample(model, solved, of, deviations, forces, (count, start))
-    return Tolerance(
-        mechanism=result.mechanism,
-        of=result.of,
-        unit=result.unit,
-        inputs={name: float(value) for name, value in result.inputs.items()},
-        input_units=result.input_units,
-        value=float(result.value),
-        contributions=tuple(sorted(shared, key=lambda part: (-part.share, part.name))),
-        status=status,
-        sampled=sampled,
-    )
-
-
 def _pin_forces(pins: tuple[tuple[str, str], ...], moved: Array) -> dict[str, Array]:
     """The forces between links at every pin for a unit load at the quantity, (rows,).
 
@@ -183,10 +128,6 @@ def _contributions(
         )  # fmt: skip
 
 
-def _with_share(part: Contribution, total: float) -> Contribution:
-    return replace(part, share=part.standard**2 / total if total > 0.0 else 0.0)
-
-
 def _sample(
     model: Model,
     solved: Position | Motion,
@@ -204,46 +145,39 @@ def _sample(
         )
         values = _of_designs(model, solved, of, plan)
     else:
-        values = np.full(count, float(_nominal(model, solved, of)))
+        nominal = solved.value(of) if isinstance(solved, Motion) else solved[of]
+        values = np.full(count, float(nominal))
     # another stream than that of the numbers
     generator = np.random.Generator(np.random.Philox(seed + 1))
     for point, size in deviations.clearances.items():
         for force in forces[point]:
             values = values + size * force * np.cos(generator.uniform(0.0, FULL_TURN, count))
     there = values[np.isfinite(values)]
-    if not len(there):
-        nan = math.nan
-        return Sampled(designs=count, found=0, seed=seed, mean=nan, deviation=nan, error=nan,
-                       low=nan, high=nan)  # fmt: skip
-    deviation = float(there.std(ddof=1)) if len(there) > 1 else 0.0
+    # without a design all numbers are NaN
+    known = there if len(there) else np.full(1, np.nan)
+    deviation = float(there.std(ddof=1)) if len(there) > 1 else 0.0 * float(known[0])
     return Sampled(
         designs=count,
         found=len(there),
         seed=seed,
-        mean=float(there.mean()),
+        mean=float(known.mean()),
         deviation=deviation,
         error=deviation / math.sqrt(2.0 * max(len(there) - 1, 1)),
-        low=float(there.min()),
-        high=float(there.max()),
+        low=float(known.min()),
+        high=float(known.max()),
     )
-
-
-def _nominal(model: Model, solved: Position | Motion, of: str) -> float:
-    return solved.value(of) if isinstance(solved, Motion) else solved[of]
 
 
 def _of_designs(
     model: Model, solved: Position | Motion, of: str, plan: Mapping[str, Array]
 ) -> Array:
     """The quantity of every design, (D,); NaN where it does not exist."""
+    family_of = wings.use("families.family").family_of
     if isinstance(solved, Motion):
-        if of.strip() in LIMITS:
-            return wings.use("families.family").family_of(model, plan).reduced(())[of.strip()]
-        return wings.use("families.family").family_of(model, plan).reduced([of])[of]
+        name = of.strip()
+        return family_of(model, plan).reduced(() if name in LIMITS else [name])[name]
     # every design is followed from the position that all deviations start from
-    one = _at_one_row(model, solved)
-    swept = wings.use("families.family").family_of(one, plan).sweep(certify=False)
-    return swept[of][:, 0]
+    return family_of(_at_one_row(model, solved), plan).sweep(certify=False)[of][:, 0]
 
 
 def _at_one_row(model: Model, position: Position) -> Model:
@@ -307,7 +241,8 @@ def tolerance(
     >>> round(found.worst_case, 6), found.contributions[0].name
     (0.057301, 'B A')
     """
-    stated = stated_deviations(mechanism.model, deviations, clearances)
+    model = mechanism.model
+    stated = _stated_deviations(model, deviations, clearances)
     solved: Motion | Position
     if is_of_motion(of):
         if at is not None:
@@ -315,4 +250,28 @@ def tolerance(
         solved = mechanism.sweep(configuration=configuration) if motion is None else motion
     else:
         solved = mechanism.solve(at, configuration=configuration)
-    return tolerance_of(mechanism.model, solved, of, stated, samples=samples, seed=seed)
+    count, start = whole_number("samples", samples), whole_number("seed", seed)
+    names = [number.name for number in stated.numbers]
+    pins = tuple((link, p) for p in stated.clearances for link in pins_of(model.description)[p])
+    result = sensitivity_of(model, solved, of, names)
+    forces = _pin_forces(pins, play_of(model, solved, of, pins))
+    parts = list(_contributions(model, result, stated, forces))
+    total = math.fsum(part.standard**2 for part in parts)
+    status = result.status
+    if status is SensitivityStatus.FOUND and not math.isfinite(total):
+        status = SensitivityStatus.CORNER
+    shared = [replace(p, share=p.standard**2 / total if total > 0.0 else 0.0) for p in parts]
+    sampled = None
+    if count and status is not SensitivityStatus.NO_POSITION:
+        sampled = _sample(model, solved, of, stated, forces, (count, start))
+    return Tolerance(
+        mechanism=result.mechanism,
+        of=result.of,
+        unit=result.unit,
+        inputs={name: float(value) for name, value in result.inputs.items()},
+        input_units=result.input_units,
+        value=float(result.value),
+        contributions=tuple(sorted(shared, key=lambda part: (-part.share, part.name))),
+        status=status,
+        sampled=sampled,
+    )

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 from linkwork.core.foundation.loading import loader
 
 if TYPE_CHECKING:
-    from linkwork.synthesis.atlas.near_paths import NearPath as NearPath, PathAtlas as PathAtlas
+    from linkwork.synthesis.atlas.path_atlas import NearPath as NearPath, PathAtlas as PathAtlas
     from linkwork.synthesis.defects.verdicts import (
         Defect as Defect,
         DefectKind as DefectKind,

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import os
 import re
-from collections.abc import Collection, Iterator
+from collections.abc import Collection, Iterable
 from dataclasses import replace
 from pathlib import Path
 
@@ -30,7 +30,7 @@ from linkwork.core.foundation.errors import InputError, MechanismError, Mechanis
 from linkwork.core.foundation.files import OwnFiles, as_path
 from linkwork.core.results.listing.motion_listing import Column, rounded_down, significant
 from linkwork.core.textfile.writer import save
-from linkwork.synthesis.atlas.near_paths import NearPath, PathAtlas
+from linkwork.synthesis.atlas.path_atlas import NearPath, PathAtlas
 from linkwork.synthesis.defects.verdicts import DefectKind, JudgedDesign
 from linkwork.synthesis.designs_folder import (
     FolderOptions,
@@ -38,6 +38,7 @@ from linkwork.synthesis.designs_folder import (
     keeps_earlier,
     write_designs,
 )
+from linkwork.synthesis.designs_page import synthesis_facts
 from linkwork.synthesis.solvers.result import Synthesis, front_of, goal_misses
 from linkwork.synthesis.solvers.solving import advice_of, remarks_on
 from linkwork.synthesis.task_copy import task_copy
@@ -55,7 +56,7 @@ _MOST_REASONS = 5
 
 def synthesis_lines(synthesis: Synthesis) -> list[str]:
     """The page of a synthesis."""
-    lines = [*title_lines(synthesis.task.name), *fields(_counts(synthesis))]
+    lines = [*title_lines(synthesis.task.name), *fields(synthesis_facts(synthesis))]
     if synthesis.dyads and len(synthesis.dyads) <= _MOST_DYADS:
         lines += ["", *_dyad_lines(synthesis)]
     if synthesis.delivered:
@@ -64,48 +65,20 @@ def synthesis_lines(synthesis: Synthesis) -> list[str]:
     return lines
 
 
-def _counts(synthesis: Synthesis) -> Iterator[tuple[str, str]]:
-    if synthesis.starts:
-        yield "starts", str(synthesis.starts)
-        if not (synthesis.task.improvement and synthesis.task.improvement.front):
-            yield "fits", f"{synthesis.real}, different ones"
-    else:
-        yield "complex", f"{synthesis.complex} solution{'' if synthesis.complex == 1 else 's'}"
-        yield "real", str(synthesis.real)
-        yield "proved", str(synthesis.proved)
-    if synthesis.triples:
-        yield "triples", str(synthesis.triples)
-    yield "completeness", synthesis.message
-    if synthesis.interrupted:
-        yield "interrupted", "the designs are the best ones so far"
-    driven = len(synthesis.designs)
-    yield "mechanisms", str(synthesis.linkages)
-    each = "one for each link that can be driven"
-    if synthesis.starts:
-        each = f"driven at {synthesis.designs[0].driven}" if synthesis.designs else "none found"
-    yield "designs", f"{driven}, {each}"
-    for kind, count in synthesis.defects.items():
-        yield kind.value, f"{count}"
-    yield "without defects", str(synthesis.sound)
-    yield "delivered", str(len(synthesis.delivered))
+def _numbers(header: str, values: Iterable[float], digits: int = _DIGITS) -> Column:
+    return Column(header=header, cells=[significant(v, digits) for v in values], align="point")
 
 
 def _dyad_lines(synthesis: Synthesis) -> list[str]:
     """The dyads: kind, pivots, proof."""
-    dyads, unit = synthesis.dyads, synthesis.task.length
-
-    def column(header: str, values: list[float]) -> Column:
-        return Column(
-            header=header, cells=[significant(v, _DIGITS + 1) for v in values], align="point"
-        )
-
+    dyads, unit, digits = synthesis.dyads, synthesis.task.length, _DIGITS + 1
     return table_lines(
         [
             Column(header="dyad", cells=[dyad.kind for dyad in dyads]),
-            column(f"moving x [{unit}]", [dyad.moving[0] for dyad in dyads]),
-            column("y", [dyad.moving[1] for dyad in dyads]),
-            column(f"fixed x [{unit}]", [dyad.fixed[0] for dyad in dyads]),
-            column("y", [dyad.fixed[1] for dyad in dyads]),
+            _numbers(f"moving x [{unit}]", [dyad.moving[0] for dyad in dyads], digits),
+            _numbers("y", [dyad.moving[1] for dyad in dyads], digits),
+            _numbers(f"fixed x [{unit}]", [dyad.fixed[0] for dyad in dyads], digits),
+            _numbers("y", [dyad.fixed[1] for dyad in dyads], digits),
             Column(header="", cells=["proved" if dyad.proved else "not proved" for dyad in dyads]),
         ]
     )
@@ -116,12 +89,9 @@ def _design_lines(synthesis: Synthesis) -> list[str]:
     designs, task = synthesis.delivered, synthesis.task
     front = front_of(synthesis)
 
-    def column(header: str, values: list[float]) -> Column:
-        return Column(header=header, cells=[significant(v, _DIGITS) for v in values], align="point")
-
     columns = [
         Column(header="", cells=[str(design.number) for design in designs], align="right"),
-        *(column(f"goal {k}", misses) for k, misses in enumerate(front.values(), start=1)),
+        *(_numbers(f"goal {k}", misses) for k, misses in enumerate(front.values(), start=1)),
     ]
     if not front:
         columns.append(Column(header="mechanism", cells=[d.mechanism for d in designs]))
@@ -129,15 +99,16 @@ def _design_lines(synthesis: Synthesis) -> list[str]:
             columns.append(Column(header="driven at", cells=[d.driven for d in designs]))
     least = [rounded_down(design.transmission, _DIGITS) for design in designs]
     columns += [
-        column(f"transmission [{task.angle.value}]", least),
-        column(f"size [{task.length}]", [design.size for design in designs]),
+        _numbers(f"transmission [{task.angle.value}]", least),
+        _numbers(f"size [{task.length}]", [design.size for design in designs]),
     ]
     if front:
         legend = [f"goal {k}: the miss of {name}" for k, name in enumerate(front, start=1)]
         return [*table_lines(columns), "", *(line for text in legend for line in wrapped(text))]
     if any(design.error for design in designs):
-        columns.append(column(_error(synthesis), [d.error for d in designs]))
-    columns.append(column("score", [design.score for design in designs]))
+        error = f"error [{synthesis.error_unit}]" if synthesis.error_unit else "error"
+        columns.append(_numbers(error, [d.error for d in designs]))
+    columns.append(_numbers("score", [design.score for design in designs]))
     return [*table_lines(columns), *_miss_lines(synthesis)]
 
 
@@ -148,10 +119,6 @@ def _miss_lines(synthesis: Synthesis) -> list[str]:
         return []
     rows = [(name, significant(values[0], _DIGITS)) for name, values in misses.items()]
     return ["", *wrapped("Design 1 misses its goals by"), *fields(rows)]
-
-
-def _error(synthesis: Synthesis) -> str:
-    return f"error [{synthesis.error_unit}]" if synthesis.error_unit else "error"
 
 
 def _verdict(result: Synthesis) -> list[str]:
@@ -201,7 +168,7 @@ def _examples(synthesis: Synthesis) -> list[JudgedDesign]:
 @click.command("synthesize")
 @click.argument("task", metavar="TASK")
 @click.option("-o", "--output", metavar="FOLDER", help="Folder for the designs.")
-@click.option("--all", "every", is_flag=True, help="Write refused designs too, in FOLDER/refused.")
+@click.option("--all", "refused", is_flag=True, help="Write refused designs to FOLDER/refused.")
 @click.option("--draw", is_flag=True, help="Draw every written design (SVG).")
 @click.option("--csv", is_flag=True, help="Write a table of all designs: FOLDER/designs.csv.")
 @click.option("--html", is_flag=True, help="Write a page of all designs: FOLDER/index.html.")
@@ -211,14 +178,11 @@ def _examples(synthesis: Synthesis) -> list[JudgedDesign]:
 @click.pass_context
 def synthesize_command(
     context: click.Context,
+    /,
     task: str,
     output: str | None,
-    every: bool,
-    draw: bool,
-    csv: bool,
-    html: bool,
-    force: bool,
     as_json: bool,
+    **flags: bool,
 ) -> None:
     """Find mechanisms for a task: poses, points, a curve or a function.
 
@@ -232,8 +196,8 @@ def synthesize_command(
       linkwork synthesize task.toml -o designs --draw --html
       linkwork synthesize task.toml -o designs --all --json
     """
-    options = FolderOptions(refused=every, draw=draw, csv=csv, html=html, force=force)
-    if output is None and any((every, draw, csv, html, force)):
+    options = FolderOptions(**flags)
+    if output is None and any(flags.values()):
         raise InputError("--all, --draw, --csv, --html and --force need a folder: add -o FOLDER")
     # a task in a file finds the files that it names beside it
     loaded = Task.load(task) if os.path.exists(task) else Task.loads(*text_of_source(task))
@@ -388,9 +352,7 @@ def _path_rows(paths: tuple[NearPath, ...]) -> list[str]:
     lines = table_lines(
         [
             Column(header="", cells=[str(near.number) for near in shown], align="right"),
-            Column(
-                header="distance", cells=[significant(n.distance, 3) for n in shown], align="point"
-            ),
+            _numbers("distance", [near.distance for near in shown], 3),
             Column(header="mechanism", cells=[near.family for near in shown]),
             Column(header="", cells=["mirrored" if n.is_mirrored else "" for n in shown]),
         ]

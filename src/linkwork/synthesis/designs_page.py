@@ -5,6 +5,7 @@ from __future__ import annotations
 import html
 import os
 from collections.abc import Iterator, Mapping, Sequence
+from pathlib import Path
 
 from linkwork.core.drawing.scene import Scene
 from linkwork.core.drawing.svg import Inks, embedded_svg, inline_svg
@@ -15,29 +16,6 @@ from linkwork.synthesis.solvers.solving import advice_of, remarks_on
 
 _LONGEST = 300.0  # the longer side of a picture [CSS pixels]
 _CLASS = "linkwork-designs"
-_STYLE = """
-body{margin:0 auto;max-width:72rem;padding:1.5rem;background:Canvas;color:CanvasText;
-color-scheme:light dark;font:15px/1.5 system-ui,-apple-system,"Segoe UI",Roboto,sans-serif}
-h1{font-size:1.4rem;margin:0 0 .5rem}h2{font-size:1.1rem;margin:1.5rem 0 .5rem}
-.pictures{display:grid;grid-template-columns:repeat(auto-fill,minmax(17rem,1fr));gap:1rem}
-figure{margin:0;padding:.75rem;border:1px solid color-mix(in srgb,CanvasText 20%,Canvas);
-border-radius:.5rem}
-.front{max-width:46rem;background:#fff}.front svg{width:100%;height:auto}
-figcaption{font-size:.85rem}
-.wide{overflow-x:auto}table{border-collapse:collapse;font-variant-numeric:tabular-nums}
-th,td{padding:.2rem .8rem .2rem 0;text-align:left;white-space:nowrap;vertical-align:top}
-th,td:last-child{white-space:normal}td:last-child:not(:empty){min-width:16rem}
-th button{font:inherit;text-align:left;font-weight:600;border:0;background:none;color:inherit;
-padding:0;cursor:pointer}tr.refused{color:color-mix(in srgb,CanvasText 60%,Canvas)}
-dl{display:grid;grid-template-columns:fit-content(36%) 1fr;gap:.1rem 1rem;margin:0}dd{margin:0}
-""".replace("\n", "")
-_SORT = """
-document.querySelectorAll("th button").forEach((button,column)=>{let up=false;
-button.addEventListener("click",()=>{up=!up;const body=document.querySelector("tbody");
-const key=(row)=>row.cells[column].dataset.key??row.cells[column].textContent;
-const rows=[...body.rows].sort((a,b)=>{const x=key(a),y=key(b),n=Number(x)-Number(y);
-return (Number.isNaN(n)?x.localeCompare(y):n)*(up?1:-1)});body.append(...rows)})});
-""".replace("\n", "")
 _MOST_ROWS = 2000
 
 
@@ -57,6 +35,9 @@ def designs_page(
         An SVG file of the trade-off between goals, if there is one.
     """
     inks = Inks()
+    style, script = (
+        Path(__file__).with_suffix(kind).read_text(encoding="utf-8") for kind in (".css", ".js")
+    )
     pictures = [
         f"<figure>{inline_svg(scene, inks, longest=_LONGEST)}"
         f"<figcaption>{html.escape(_caption(synthesis, design))}</figcaption></figure>"
@@ -66,20 +47,14 @@ def designs_page(
     return (
         f'<!doctype html><html lang="en"><head><meta charset="utf-8"><title>{title}</title>'
         '<meta name="viewport" content="width=device-width,initial-scale=1">'
-        f"<style>{_STYLE}{inks.rules(_CLASS)}</style></head>"
-        f'<body class="{_CLASS}"><h1>{title}</h1><dl>{"".join(_counts(synthesis))}</dl>'
+        f"<style>{style}{inks.rules(_CLASS)}</style></head>"
+        f'<body class="{_CLASS}"><h1>{title}</h1><dl>{"".join(_facts(synthesis))}</dl>'
         f"{_front(front)}"
         f'<h2>Delivered</h2><div class="pictures">{"".join(pictures)}</div>'
         f'<h2>All designs</h2><div class="wide"><table><thead><tr>{_head(synthesis)}</tr></thead>'
         f"<tbody>{''.join(_design_rows(synthesis, files))}</tbody></table></div>"
-        f"<script>{_SORT}</script></body></html>\n"
+        f"<script>{script}</script></body></html>\n"
     )
-
-
-def _solutions(solved: Synthesis) -> tuple[str, str]:
-    if solved.starts:
-        return "starts", str(solved.starts)
-    return ("solutions", f"{solved.complex} complex, {solved.real} real, {solved.proved} proved")
 
 
 def _front(picture: bytes) -> str:
@@ -89,16 +64,35 @@ def _front(picture: bytes) -> str:
     return f'<h2>Front</h2><figure class="front">{shown}</figure>'
 
 
-def _counts(synthesis: Synthesis) -> Iterator[str]:
-    pairs = [
-        _solutions(synthesis),
-        ("mechanisms", str(synthesis.linkages)),
-        ("designs", str(len(synthesis.designs))),
-        *((kind.value, str(count)) for kind, count in synthesis.defects.items()),
-        ("delivered", f"{len(synthesis.delivered)} of {synthesis.sound} without defects"),
-        ("completeness", synthesis.message),
-    ]
-    pairs += [("remark", text) for text in remarks_on(synthesis)]
+def synthesis_facts(synthesis: Synthesis) -> Iterator[tuple[str, str]]:
+    """How many solutions and designs there are, and whether these are all."""
+    if synthesis.starts:
+        yield "starts", str(synthesis.starts)
+        if not (synthesis.task.improvement and synthesis.task.improvement.front):
+            yield "fits", f"{synthesis.real}, different ones"
+    else:
+        yield "complex", f"{synthesis.complex} solution{'' if synthesis.complex == 1 else 's'}"
+        yield "real", str(synthesis.real)
+        yield "proved", str(synthesis.proved)
+    if synthesis.triples:
+        yield "triples", str(synthesis.triples)
+    yield "completeness", synthesis.message
+    if synthesis.interrupted:
+        yield "interrupted", "the designs are the best ones so far"
+    driven = len(synthesis.designs)
+    yield "mechanisms", str(synthesis.linkages)
+    each = "one for each link that can be driven"
+    if synthesis.starts:
+        each = f"driven at {synthesis.designs[0].driven}" if synthesis.designs else "none found"
+    yield "designs", f"{driven}, {each}"
+    for kind, count in synthesis.defects.items():
+        yield kind.value, f"{count}"
+    yield "without defects", str(synthesis.sound)
+    yield "delivered", str(len(synthesis.delivered))
+
+
+def _facts(synthesis: Synthesis) -> Iterator[str]:
+    pairs = [*synthesis_facts(synthesis), *(("remark", text) for text in remarks_on(synthesis))]
     if advice := advice_of(synthesis):
         pairs.append(("advice", advice))
     if len(synthesis.designs) > _MOST_ROWS:

@@ -19,13 +19,12 @@ from linkwork.families.study import read_plan_text, run_study
 from linkwork.synthesis.atlas.path_atlas import (
     SHIPPED,
     AtlasFamily,
-    Nearest,
+    NearPath,
     PathAtlas,
     coefficients,
     distances,
     in_ways,
     placed_on_curve,
-    read_atlas,
 )
 from linkwork.synthesis.atlas.stored_paths import atlas_of_stores
 
@@ -57,7 +56,7 @@ def test_place_size_direction_sense_and_mirroring_leave_the_shape() -> None:
 def test_the_nearest_paths_are_those_of_all_comparisons() -> None:
     families = tuple(
         replace(family, numbers=family.numbers[:900], shapes=family.shapes[:900])
-        for family in read_atlas().families
+        for family in PathAtlas.shipped().families
     )
     # more than are compared at first
     joined = replace(
@@ -74,7 +73,7 @@ def test_the_nearest_paths_are_those_of_all_comparisons() -> None:
 
 @pytest.mark.parametrize("place", [1, 2])
 def test_a_path_of_the_atlas_is_found_again_and_drawn(place: int) -> None:
-    family = read_atlas().families[place]
+    family = PathAtlas.shipped().families[place]
     numbers = dict(zip(family.names, family.numbers[7].tolist(), strict=True))
     original = lw.loads(family.mechanism)
     path = original.family({k: np.array([v]) for k, v in numbers.items()}).sweep().trace("P")[0]
@@ -108,7 +107,7 @@ def test_offsets_of_sliders_are_placed_with_the_mechanism() -> None:
     wanted = ((3.0 - 2.0j) * path[:-1] + 40.0).conj()
     near = PathAtlas(families=(family,)).nearest(wanted, 1)[0]
     assert near.is_mirrored
-    placed, gap = placed_on_curve(near, wanted, "placed")
+    placed, gap = placed_on_curve(near, "placed")
     assert gap < 1e-9 * np.abs(wanted).max()
     motion = lw.Mechanism(placed).sweep()
     assert np.abs(motion.trace("P")[:, None] - wanted).min(axis=0).max() < 1e-6
@@ -123,9 +122,10 @@ def test_mechanisms_with_other_parts_than_sliders_are_not_placed() -> None:
         numbers=np.zeros((1, 0), dtype=np.float32),
         shapes=np.zeros((1, 32), dtype=np.float16),
     )
-    near = Nearest(family=family, index=0, distance=0.0, way=0)
+    circle = np.exp(1j * np.arange(9))
+    near = NearPath(number=1, distance=0.0, designs=family, index=0, way=0, curve=circle)
     with pytest.raises(lw.InputError, match="of links and sliders only"):
-        placed_on_curve(near, np.exp(1j * np.arange(9)), "placed")
+        placed_on_curve(near, "placed")
 
 
 def test_an_atlas_is_made_of_the_stores_of_studies(tmp_path: Path) -> None:
@@ -138,7 +138,7 @@ def test_an_atlas_is_made_of_the_stores_of_studies(tmp_path: Path) -> None:
     done = CliRunner().invoke(linkwork, ["atlas", "--index", *twice, "-o", str(file)])
     assert done.exit_code == 0, done.output
     assert "paths of 1 store to" in " ".join(done.stdout.split())
-    (made,), shipped = read_atlas(file).families, read_atlas().families[1]
+    (made,), shipped = PathAtlas.load(file).families, PathAtlas.shipped().families[1]
     assert 40 < len(made) < 60
     assert made.mechanism == shipped.mechanism
     assert np.array_equal(made.numbers, shipped.numbers[: len(made)])
@@ -200,7 +200,7 @@ def test_the_command_writes_mechanisms_placed_on_the_curve(tmp_path: Path) -> No
     done = CliRunner().invoke(linkwork, arguments)
     assert done.exit_code == 0, done.output
     data = json.loads(done.stdout)
-    assert data["paths"] == len(read_atlas())
+    assert data["paths"] == len(PathAtlas.shipped())
     assert [near["distance"] for near in data["nearest"]] == sorted(
         near["distance"] for near in data["nearest"]
     )
@@ -264,7 +264,7 @@ def test_curves_and_files_that_are_none_are_refused(tmp_path: Path) -> None:
         lw.synthesis.PathAtlas.load(broken)
     with pytest.raises(lw.InputError, match="there is no atlas"):
         lw.synthesis.PathAtlas.load(tmp_path / "missing.npz")
-    assert isinstance(read_atlas().families[0], AtlasFamily)
+    assert isinstance(PathAtlas.shipped().families[0], AtlasFamily)
     assert SHIPPED.stat().st_size < 5e6
 
 

@@ -270,11 +270,11 @@ def test_missing_pairs_lie_between_those_given() -> None:
     [
         ({"positions": 5}, "5 given: give 6 or more"),
         ({"fit": "minimax"}, "has no effect on watt-ii"),
-        ({"mechanism": ["watt-ii", "four-bar"]}, "write a separate task for it"),
+        ({"mechanism": ["watt-ii", "four-bar"]}, "watt-ii meets more pairs; write a task for each"),
         ({"given": {"fixed_pivots": [[0, 0], [1, 0]]}}, "must be three pivots, A0, B0 and C0"),
         ({"given": {"fixed_pivots": [[0, 0], [0, 0], [1, 0]]}}, "of which neighbours differ"),
         ({"given": {"fixed_pivots": [[0, 0], [1, 0], [2, 0]]}}, "leave the start angles no choice"),
-        ({"given": {"moving_pivots": [[0, 0]]}}, "has no effect on functions"),
+        ({"given": {"moving_pivots": [[0, 0]]}}, "belongs to poses without timing"),
         ({"given": {"lengths": {"A B": 2}}}, "belongs to points"),
     ],
 )  # fmt: skip
@@ -288,7 +288,9 @@ def test_tasks_that_a_six_bar_cannot_do_are_refused(tables: dict[str, Any], mess
 
 def test_pairs_are_counted_and_must_differ() -> None:
     pairs = [[10.0 * k, float(k * k)] for k in range(10)]
-    with pytest.raises(lw.MechanismError, match="10 pairs leave no watt-ii in general: keep 9"):
+    with pytest.raises(
+        lw.MechanismError, match="10 pairs leave no watt-ii with free start angles: keep 9"
+    ):
         lw.Task.function(pairs, mechanism="watt-ii")
     with pytest.raises(lw.MechanismError, match="5 given: give 6 or more"):
         lw.Task.function(pairs[:5], mechanism="watt-ii")
@@ -298,7 +300,7 @@ def test_pairs_are_counted_and_must_differ() -> None:
     pairs = [[10.0 * k, 5.0] for k in range(9)]
     with pytest.raises(lw.MechanismError, match=r"pairs  all have the output 5, so that the out"):
         lw.Task.function(pairs, mechanism="watt-ii")
-    with pytest.raises(lw.MechanismError, match="is made for functions only"):
+    with pytest.raises(lw.MechanismError, match=r'for task = "path", got .watt-ii.'):
         lw.Task.path([(0, 0), (1, 1)], mechanism="watt-ii")
 
 

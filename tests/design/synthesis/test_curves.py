@@ -93,7 +93,7 @@ def test_a_curve_in_a_file_is_followed_in_order(tmp_path: Path) -> None:
         ("1,2,0\n3,4,9\n5,4,0\n6,4,20\n7,1,30\n", 'timing = "as given"',
          "line 3 has the input of line 1: move one of them"),
         ("1,2\n3,4\n5,4\n6,4\n7,1\n", 'timing = "as given"', "third column"),
-        ("1,2\n3,4\n3,4\n6,4\n7,1\n", "", "repeats line 2 in line 3: leave one out"),
+        ("1,2\n3,4\n3,4\n6,4\n7,1\n", "", "line 3 is the same as line 2: leave one out"),
         ("# foot\n1,2\n", "", "has 1 point: a curve"),
     ],
 )  # fmt: skip
@@ -130,10 +130,10 @@ def test_unknown_and_contradicting_settings_are_refused() -> None:
         _timed(improve={"bounds": {"A B": [-3, -2]}})
     with pytest.raises(MechanismError, match=r"A0.x.  is given in .given. already"):
         _timed(given={"fixed_pivots": [(0, 0)]}, improve={"bounds": {"A0.x": [1, 2]}})
-    with pytest.raises(MechanismError, match=r"^1 problem .*\n.*2\].input  is that of position 1"):
+    with pytest.raises(
+        MechanismError, match=r"^1 problem .*\n.*2\].input  has the input of position 1"
+    ):
         lw.Task.path(_EIGHTEEN, inputs=[0.0, 0.0, *range(10, 26)])
-    with pytest.raises(MechanismError, match=r"^1 problem .*\n.*out of reach"):
-        lw.Task.path(_EIGHTEEN, wanted={"lengths": {"most": 0.02}})
 
 
 @pytest.mark.parametrize("kind", [FourBarCurves, SliderCrankCurves])

@@ -304,10 +304,10 @@ def test_pairs_whose_outputs_are_equal_are_refused(
 @pytest.mark.parametrize(
     ("of", "end", "told"),
     [
-        ("sin(x)", np.pi, "nearly the same value at both ends, 0 and 1.22465e-16"),
-        ("sin(x)", 2.0 * np.pi, "nearly the same value at both ends, 0 and -2.44929e-16"),
-        ("sin(x)", 3.14159, "nearly the same value at both ends, 0 and 2.65359e-06"),
-        ("sin(x)^2 + cos(x)^2", 0.7, "(nearly the same|the) value.* at both ends.*"),
+        ("sin(x)", np.pi, "the value 0 at both ends"),
+        ("sin(x)", 2.0 * np.pi, "the value 0 at both ends"),
+        ("sin(x)", 3.14159, "the value 0 at both ends"),
+        ("sin(x)^2 + cos(x)^2", 0.7, "the value.* at both ends"),
         ("9e307*cos(x)", 2.0 * np.pi, "the value 9e[+]307 at both ends"),
     ],
 )  # fmt: skip

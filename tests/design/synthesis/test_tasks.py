@@ -54,32 +54,15 @@ def test_the_examples_have_sound_designs_and_fit_the_schema(path: Path) -> None:
         (_MOTION.replace("angle = 45\n", "angle = 45\ninput = 20\n"), 3, "positions[1].input",
          "is missing: time all positions or none"),
         (_points(4).replace("path", "motion").replace("point", "input = 5\nangle = 1\npoint"), 8,
-         "positions[2].input", "is that of position 1: move one of them"),
+         "positions[2].input", "has the input of position 1: move one of them"),
         (_points(4).replace("'path'", "'path'\nmechanism = 'slider-crank'"), 3, "mechanism",
          'solved for the "four-bar" only: with [improve] starts = 1000 other kinds are fitted'),
         (_MOTION + "[wanted]\nlengths = { least = 50, most = 20 }\n", 19, "wanted.lengths",
          "least = 50 and most = 20 contradict each other"),
-        (_MOTION + "[wanted]\nlengths = { most = 20 }\n", 10, "positions[3].point",
-         "is 128.062 from position 1, out of reach of links of at most 20"),
         (_MOTION + "[rank]\ndeliver = 2000000\n", 19, "rank.deliver",
          "must be a whole number of at most 1000000, got 2000000"),
         (_MOTION + "[wanted]\nlengths = { least = -5 }\n", 19, "wanted.lengths.least",
          "must not be negative, got -5"),
-        (_MOTION + "[wanted]\nlengths = { most = 100 }\n"
-         "fixed_pivots = { inside = [[300, 0], [310, 0], [300, 10]] }\n", 20,
-         "wanted.fixed_pivots.inside",
-         "is 300 from position 1, out of reach of links of at most 100: crank and arm reach 200"),
-        (_MOTION + "[wanted]\nclear_of = [[300, 0, 20]]\n"
-         "fixed_pivots = { inside = [[300, 0], [310, 0], [300, 10]] }\n", 20,
-         "wanted.fixed_pivots.inside", "is in circle 1 of clear_of, so no design can be clear"),
-        (_points(4) + "[given]\nfixed_pivots = [[99, 0]]\n[wanted]\nlengths = { most = 40 }\n", 12,
-         "given.fixed_pivots[1]", "is 99 from position 1, out of reach of links of at most 40"),
-        (_points(4) + "[given]\nlengths = { 'A0 A' = 2, 'A B' = 9 }\n"
-         "[wanted]\nlengths = { ratio = 4 }\n", 14, "wanted.lengths.ratio",
-         'is exceeded by the given lengths "A B" = 9 and "A0 A" = 2: change one of them'),
-        (_points(2) + "[given]\nfixed_pivots = [[0, 9], [9, 9]]\n"
-         "lengths = { 'A0 A' = 2, 'A B' = 3, 'B0 B' = 4 }\n", 9, "given.lengths",
-         'cannot close a loop: "A0 B0" is not shorter than the others together; change one'),
         (_MOTION + "[wanted]\ntransmission = { least = 90 }\n", 19, "wanted.transmission.least",
          "must be at least 0 and below 90, got 90"),
         (_MOTION + "[wanted]\ninput = { from = 20, to = 20 }\n", 19, "wanted.input",
@@ -198,24 +181,6 @@ def test_a_task_of_points_and_poses_is_that_of_its_file() -> None:
         lw.Task.mixed([(0,), *rows])
 
 
-@pytest.mark.parametrize("size", [1e-13, 1e-200])
-@pytest.mark.parametrize("key", ["positions", "lengths", "clear_of", "fixed_pivots"])
-def test_sizes_beyond_floating_point_are_refused(key: str, size: float) -> None:
-    points = [(0.0, 0.0), (1.0, 1.0), (3.0, 0.0)]
-    every: dict[str, dict[str, Any]] = {
-        "positions": {},
-        "lengths": {"given": {"lengths": {"A B": size}}},
-        "clear_of": {"wanted": {"clear_of": [[0, 0, size]]}},
-        "fixed_pivots": {"wanted": {"fixed_pivots": {"inside": [[0, 0], [size, 0], [0, size]]}}},
-    }
-    if key == "positions":
-        points = [(x * size / 3.0, y * size / 3.0) for x, y in points]
-    with pytest.raises(
-        lw.MechanismError, match=rf"1 pro.*\n.*{key}  has no number beyond ±{size:g} "
-    ):
-        lw.Task.path(points, **every[key])
-
-
 def test_a_range_of_more_than_a_turn_is_refused_of_cranks_alone() -> None:
     wanted = {"input": {"from": 20, "to": 500}}
     told = 'wanted.input  spans 480, more than a turn of 360: write input = "turns fully"'
@@ -293,45 +258,15 @@ def test_a_mechanism_that_passes_its_positions_is_judged_without_its_circuits(
     assert lw.Task.path(places).defects_of(legs, inputs, point=point) == ()
 
 
-def test_bounds_of_lengths_refuse_no_places_that_other_kinds_of_links_reach() -> None:
-    """Guides are endless, and mechanisms that are improved have more links than a crank and arm.
-
-    Points of a fit may be missed.
-    """
-    short = "[wanted]\nlengths = { most = 20 }\n"
-    read_task_text(_MOTION.replace("'motion'", "'motion'\nmechanism = 'double-slider'") + short)
-    read_task_text(_points(20).replace("'path'", "'improve'\nmechanism = 'klann-leg'") + short)
-    away = "fixed_pivots = { inside = [[90, 0], [91, 0], [90, 1]] }\n"
-    far = short.replace("20", "25") + away
-    read_task_text(_points(10) + far)
-    read_task_text(_points(10, "tolerance = 40.5") + far)
-    with pytest.raises(lw.MechanismFileError, match="is 90 from position 1, out of reach"):
-        read_task_text(_points(10, "tolerance = 39.5") + far)
-
-
-def test_a_fit_to_given_lengths_that_close_no_loop_is_refused() -> None:
-    given = {"lengths": {"A0 A": 2.0, "A B": 3.0, "B0 B": 4.0}, "fixed_pivots": [(0, 9), (90, 9)]}
-    points, improve = [(0, 0), (1, 1), (4, 2), (9, 3)], {"starts": 40}
-    with pytest.raises(lw.MechanismError, match="cannot close a loop"):
-        lw.Task.path(points, given=given, improve=improve)
-    del given["fixed_pivots"]
-    lw.Task.path(points, given=given, improve=improve)
-
-
 def test_wishes_that_some_design_has_are_not_refused() -> None:
-    """Sliders have no ground, fits may miss points, double sliders have no pivots."""
+    """Sliders have no ground, fits may miss points."""
     square: dict[str, Any] = {"x": (0, 1), "input": (30, 120), "output": (10, 20)}
     square["given"] = {"fixed_pivots": [(0, 0), (100, 0)]}
     square["wanted"] = {"lengths": {"most": 90}}
     assert lw.Task.function("x^2", mechanism="slider-crank", **square).solve().delivered
     points = [(10 * i, i * i % 7) for i in range(12)]
     lw.Task.path(points, improve={"starts": 40}, wanted={"clear_of": [[0, 0.02, 0.03]]})
-    region = {"fixed_pivots": {"inside": [[0, 1000], [1, 1000], [1, 1001]]}}
-    wanted = {**region, "clear_of": [[0, 1000, 5]]}
     poses = [(0, 0, 0), (40, -40, 10), (100, -80, 25)]
-    lw.Task.motion(poses, mechanism="double-slider", wanted=wanted)
-    with pytest.raises(lw.MechanismError, match="no design can be clear of it"):
-        lw.Task.motion(poses, wanted=wanted)
     bow = [[0, -50], [50, 0], [50, -50], [0, 0]]
     crosses = r"crosses itself between corners 1, 2 and 3, 4: list them around the region"
     with pytest.raises(lw.MechanismError, match=crosses):
@@ -351,7 +286,3 @@ def test_given_numbers_that_no_design_has_are_refused() -> None:
     points: list[tuple[float, float]] = [(0, 0), (1, 1), (4, 2), (9, 3)]
     with pytest.raises(lw.MechanismError, match="is the same place as the first"):
         lw.Task.path(points, given={"fixed_pivots": [(1, 1), (1, 1)]}, improve={"starts": 40})
-    sides = {"lengths": {"A0 A": 2.0, "A B": 30.0}}
-    ratio = {"lengths": {"ratio": 10}}
-    with pytest.raises(lw.MechanismError, match='given lengths "A B" = 30 and "A0 A" = 2: ch'):
-        lw.Task.path(points, given=sides, improve={"starts": 40}, wanted=ratio)

@@ -39,12 +39,6 @@ from linkwork.core.motion.iterating import moving_loops
 from linkwork.core.results.motion import Motion, motion_summary
 from linkwork.core.results.position import Position, position_summary
 from linkwork.core.results.tables import Summary
-from linkwork.design.tolerance_results import (
-    Sensitivity,
-    Tolerance,
-    sensitivity_summary,
-    tolerance_summary,
-)
 
 _CLASS = "linkwork-shown"
 _LONGEST, _IN_ROW, _OF_CIRCUIT = 380.0, 230.0, 310.0  # longer sides of pictures [CSS px]
@@ -131,14 +125,9 @@ def circuits_html(circuits: Circuits) -> str:
     return _element(circuits_summary(circuits), pictures, inks)
 
 
-def sensitivity_html(sensitivity: Sensitivity) -> str:
-    """The derivatives of a quantity, the largest first."""
-    return _element(sensitivity_summary(sensitivity), [], Inks())
-
-
-def tolerance_html(tolerance: Tolerance) -> str:
-    """A tolerance: worst case, root sum square, shares."""
-    return _element(tolerance_summary(tolerance), [], Inks())
+def summary_html(summary: Summary) -> str:
+    """A result without pictures."""
+    return _element(summary, [], Inks())
 
 
 def _position(

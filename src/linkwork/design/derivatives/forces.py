@@ -14,7 +14,7 @@ from typing import Any
 import numpy as np
 
 from linkwork.core.expression.derivatives import Jet
-from linkwork.core.foundation.arrays import Array
+from linkwork.core.foundation.arrays import Array, inverses
 from linkwork.core.foundation.errors import InputError
 from linkwork.core.foundation.lanes import is_batched
 from linkwork.core.foundation.names import GROUND
@@ -247,8 +247,7 @@ class LoadedRows(DifferentiatedRows):
         """The reactions of a linkage that was read from loops, none if they read otherwise; points
         of it that the file lacks.
         """
-        there = np.logical_not(self.lost)
-        plain = Geometry(self.model, RowValues(self.model, self.solution, *self._rates, there))
+        plain = Geometry(self.model, self._plain)
         nominal = read_bodies(plain, self._applied(plain, self.model.description))
         if nominal is None:
             return {}, []
@@ -260,6 +259,12 @@ class LoadedRows(DifferentiatedRows):
         return _Equilibrium(taped, nominal, self.tape, 1.0).readings(), []
 
     @cached_property
+    def _plain(self) -> RowValues:
+        """The same rows with plain numbers."""
+        there = np.logical_not(self.lost)
+        return RowValues(self.model, self.solution, *self._rates, there)
+
+    @cached_property
     def _joints(self) -> _Equilibrium:
         """The equilibrium of a linkage in motion, or about to move."""
         return self._equilibrium(1.0)
@@ -268,9 +273,7 @@ class LoadedRows(DifferentiatedRows):
         """The equilibrium of a linkage that moves on, or back."""
         description, geometry = self.description, TapedGeometry(self)
         assert isinstance(description, Linkage)
-        there = np.logical_not(self.lost)
-        plain = RowValues(self.model, self.solution, *self._rates, there)
-        nominal = free_bodies_of(self.model, plain)
+        nominal = free_bodies_of(self.model, self._plain)
         applied = AppliedLoads(geometry, 0.0 if self.speed is None else self.speed)
         applied.weigh(description)
         taped = free_bodies(description, geometry, applied)
@@ -304,11 +307,7 @@ class _Equilibrium:
                 for row, value in bodies.entries(act):
                     rest[row] = rest[row] + value * factor
         # eq. (126): the step that equilibrium takes, and that of the amounts with it
-        none = np.zeros(len(r))
-        step = [
-            tape.combine(none, [(-inverse[:, k, i], part) for i, part in enumerate(rest)])
-            for k in range(r.shape[1])
-        ]
+        step = tape.stepped(np.zeros_like(r), inverse, rest)
         changes = self._changes(step)
         answers = solved.answers
         self.unknowns = [
@@ -346,11 +345,7 @@ class _Equilibrium:
                 for other, answer in enumerate(solved.answers):
                     matrix[:, k, other] -= slope[:, place] * answer[:, j]
             sides.append(side)
-        inverse = np.linalg.inv(matrix)
-        return [
-            self.tape.combine(np.zeros(rows), [(inverse[:, k, j], x) for j, x in enumerate(sides)])
-            for k in range(count)
-        ]
+        return self.tape.stepped(np.zeros((rows, count)), -inverses(matrix), sides)
 
     def friction_effort(self) -> Any:
         """What friction adds to the effort of the only input, (B,)."""

@@ -38,23 +38,27 @@ from linkwork.families.building import write_equations
 
 @dataclass(frozen=True, eq=False)
 class RegularRows:
-    """Solved rows: variables (B, N), which exist, which have rates, and the rows themselves."""
+    """Solved rows: variables (B, N), which exist, and which have rates."""
 
     v: Array
     found: BoolArray
     regular: BoolArray
-    solved: Solved
+
+    @property
+    def differentiable(self) -> Array:
+        """The variables, NaN in rows without a derivative, which would spoil inverses of others."""
+        return np.where((self.found & self.regular)[:, None], self.v, np.nan)
 
     def take(self, order: IndexArray) -> RegularRows:
         """Rows in another order."""
-        return RegularRows(self.v[order], self.found[order], self.regular[order], self.solved)
+        return RegularRows(self.v[order], self.found[order], self.regular[order])
 
 
 def row_of(model: Model, position: Position) -> RegularRows:
     """One position as a row."""
     v = np.append(position.q, np.array([*position.input.values()]) * model.input_scale)[None, :]
     solved = np.array([position.status.ok])
-    return RegularRows(v, solved, _rates_exist(model, position, 1), position)
+    return RegularRows(v, solved, _rates_exist(model, position, 1))
 
 
 def rows_of(model: Model, motion: Motion, *further: Motion) -> RegularRows:
@@ -69,7 +73,7 @@ def rows_of(model: Model, motion: Motion, *further: Motion) -> RegularRows:
     ]  # fmt: skip
     solved = np.concatenate([each.found for each in parts])
     regular = np.concatenate([_rates_exist(model, each, len(each)) for each in parts])
-    return RegularRows(np.concatenate(v), solved, regular, motion)
+    return RegularRows(np.concatenate(v), solved, regular)
 
 
 def _rates_exist(model: Model, solved: Solved, count: int) -> BoolArray:
@@ -296,10 +300,9 @@ class DifferentiatedRows(QuantityValues):
             jets = [Jet(*parts) for parts in zip(*columns, strict=True)]
             rows = self._residuals(dict(zip(self._symbols, jets, strict=True)))
             parts = [(jet.v, jet.d1, jet.d2)[order] for jet in rows]
-            for k in range(self.count):
-                # eq. (120)
-                terms = [(-self._inverse[:, k, i], part) for i, part in enumerate(parts)]
-                columns[order][k] = self.tape.combine(known[order][:, k], terms)
+            unknown = known[order][:, : self.count]
+            # eq. (120)
+            columns[order][: self.count] = self.tape.stepped(unknown, self._inverse, parts)
         jets = [Jet(*parts) for parts in zip(*columns, strict=True)]
         return dict(zip(self._symbols, jets, strict=True))
 
@@ -319,9 +322,8 @@ class DifferentiatedRows(QuantityValues):
             return {symbol: Jet(value, rate, zero) for symbol, value, rate in parts}
 
         parts = [row.d1 for row in self._residuals(jets())]
-        for k in range(self.count):
-            terms = [(-self._inverse[:, k, i], part) for i, part in enumerate(parts)]
-            first[k] = self.tape.combine(rates[:, k], terms)  # eq. (120)
+        # eq. (120)
+        first[: self.count] = self.tape.stepped(rates[:, : self.count], self._inverse, parts)
         # the copy shares all but variables and points
         moved = copy(self)
         moved._points = {}
@@ -476,15 +478,10 @@ class DifferentiatedFolds(DifferentiatedRows):
         bend: Any = zero
         for k, row in enumerate(rows):
             bend = bend + row.d1 * left[:, k]
-        inverse = self._bordered()
         parts = [row.v for row in rows] + [bend]
         unknown = [*range(self.count), self.lead]
-        values = {
-            k: self.tape.combine(
-                self.solution[:, k], [(-inverse[:, place, i], x) for i, x in enumerate(parts)]
-            )
-            for place, k in enumerate(unknown)
-        }
+        steps = self.tape.stepped(self.solution[:, unknown], self._bordered(), parts)
+        values = dict(zip(unknown, steps, strict=True))
         # inputs in lock-step follow the leading one
         for k, rate in enumerate(self._input_rate, start=self.count):
             if k != self.lead:

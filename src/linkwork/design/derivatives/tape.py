@@ -227,6 +227,15 @@ class Tape(Consensus):
         nodes = [x.node for _, x in taped]
         return self._node(np.asarray(values), nodes, [(factor, None) for factor, _ in taped])
 
+    def stepped(self, values: Array, inverse: Array, rest: Sequence[Any]) -> list[Any]:
+        """Values (B, n) less ``inverse`` (B, n, m) times m numbers that are 0: they have only
+        derivatives.
+        """
+        return [
+            self.combine(value, [(-row[:, i], x) for i, x in enumerate(rest)])
+            for value, row in zip(values.T, inverse.swapaxes(0, 1), strict=True)
+        ]
+
     def decidable(self, truths: AnyArray) -> Any:
         """Truths that rows agree on while their equations are written."""
         together = self.writing and not self.is_shared and truths.dtype == bool

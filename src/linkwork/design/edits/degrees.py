@@ -20,7 +20,6 @@ from linkwork.core.foundation.units import AngleUnit
 _ANGLE_OF = ("sin", "cos", "tan", "cis")
 _TO_ANGLE = ("asin", "acos", "atan")
 _ALIKE = ("abs", "hypot", "min", "max", "atan2")
-_MOST = 4_000  # literal numbers and names: elimination is quadratic
 
 
 @dataclass(frozen=True)
@@ -52,7 +51,6 @@ class Degree:
 
 
 PURE, LENGTH, ANGLE = Degree(), Degree(Fraction(1)), Degree(Fraction(0), Fraction(1))
-_SIMPLE = (PURE, LENGTH, ANGLE)
 
 
 class Degrees:
@@ -111,8 +109,6 @@ class Degrees:
                 )
             return one
         unknown, factor = list(gap.rest.items())[-1]
-        if len(self._known) > _MOST:
-            raise InputError(f"formulas have more than {_MOST} numbers: these are not converted")
         self._known[unknown] = PURE.plus(
             Degree(gap.length, gap.angle, {u: f for u, f in gap.rest.items() if u != unknown}),
             -1 / factor,
@@ -120,32 +116,13 @@ class Degrees:
         return one
 
     def settle(self) -> None:
-        """Make literal numbers that are only factors plain numbers: 2 in ``2*a``.
-
-        If a name becomes neither length, angle nor number by this, it is a plain number instead.
-        """
-        before = dict(self._known)
-        self._prefer_pure()
-        odd = [name for name in self._names if self.of(name) not in (None, *_SIMPLE)]
-        self._known, settled = before, self._known
-        changed = [name for name in odd if self.of(name) is None]
-        if not changed:
-            self._known = settled
-            return
-        for name in changed:
-            self._prefer(name)
-        self._prefer_pure()
-
-    def _prefer_pure(self) -> None:
+        """Make literal numbers that are only factors plain numbers: 2 in ``2*a``."""
         # constants last: pi in pi/2 is the angle
         every = [literal for literals in self._literals.values() for literal in literals]
         for literal in sorted(every, key=lambda one: one.constant):
-            self._prefer(literal)
-
-    def _prefer(self, unknown: str | Literal) -> None:
-        degree = self.resolved(Degree(rest={unknown: Fraction(1)}))
-        if degree.rest:
-            self.equate(degree, PURE, "")
+            degree = self.resolved(Degree(rest={literal: Fraction(1)}))
+            if degree.rest:
+                self.equate(degree, PURE, "")
 
     def _literal(self, where: str, column: int, constant: bool = False) -> Degree:
         literal = Literal(where, column, constant)

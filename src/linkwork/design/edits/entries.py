@@ -314,7 +314,7 @@ def mirror_numbers(edits: TextEdits, points: set[str]) -> None:
     within = points | links
     for table in PARTS:
         for k, row in edits.entries(table):
-            if all(name in within for _, name in _references(table, row)):
+            if within.issuperset(_references(table, row)):
                 within.add(canonical(str(row.get("name", ""))))
                 for key, number in _mirrored(table, row).items():
                     edits.put((table, k, key), number)
@@ -347,22 +347,20 @@ def _copy_parts(edits: TextEdits, new: Mapping[str, str], mirrored: bool) -> Non
     taken = set(names_in_file(edits))
     for table in PARTS:
         for _, row in list(edits.entries(table)):
-            refers = list(_references(table, row))
-            if not all(name in known for _, name in refers):
+            refers = _references(table, row)
+            # not between shared points only
+            if not known.keys() >= {*refers} or all(known[name] == name for name in refers):
                 continue
-            if all(known[name] == name for _, name in refers):
-                continue  # between shared points only
             copy = {**row, **(_mirrored(table, row) if mirrored else {})}
-            for key in PARTS[table].keys:
-                for entry in entries({key.name: row[key.name]}, (key,)) if key.name in row else ():
-                    if not entry.of:
-                        continue
+            for entry in entries(row, PARTS[table].keys):
+                if entry.of:
+                    key, *place = str(entry.path[0]), *entry.path[1:]
                     name = known[canonical(str(entry.given))]
-                    if isinstance(copy[key.name], list):
-                        copy[key.name] = [*copy[key.name]]
-                        copy[key.name][int(entry.path[1])] = name
+                    if place:
+                        copy[key] = [*copy[key]]
+                        copy[key][place[0]] = name
                     else:
-                        copy[key.name] = name
+                        copy[key] = name
             if "name" in row:
                 copy["name"] = free_name(str(row["name"]), taken)
                 known[canonical(str(row["name"]))] = copy["name"]
@@ -379,11 +377,10 @@ def _copy_friction(edits: TextEdits, new: Mapping[str, str]) -> None:
             edits.put(("friction", copy), edits.get(("friction", name)))
 
 
-def _references(table: str, row: Mapping[str, Any]) -> Iterator[tuple[str, str]]:
-    """What a part refers to: kinds and canonical names."""
-    for entry in entries(row, PARTS[table].keys):
-        if entry.of:
-            yield entry.of, canonical(str(entry.given))
+def _references(table: str, row: Mapping[str, Any]) -> list[str]:
+    """The canonical names to which a part refers."""
+    listed = entries(row, PARTS[table].keys)
+    return [canonical(str(entry.given)) for entry in listed if entry.of]
 
 
 def _mirrored(table: str, row: Mapping[str, Any]) -> dict[str, Any]:

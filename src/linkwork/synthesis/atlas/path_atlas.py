@@ -8,24 +8,29 @@ conjugates them. The distance of two shapes is the least over all of these, eq. 
 
 from __future__ import annotations
 
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 from io import BytesIO
 from pathlib import Path
+from typing import Self
 from zipfile import BadZipFile
 
 import numpy as np
 
+from linkwork.core.api.mechanism import Mechanism
 from linkwork.core.foundation.arrays import AnyArray, Array, ComplexArray, IndexArray
-from linkwork.core.foundation.errors import InputError
-from linkwork.core.foundation.files import save_bytes
+from linkwork.core.foundation.errors import InputError, internal
+from linkwork.core.foundation.files import as_path, save_bytes
+from linkwork.core.foundation.values import as_told, whole_number
 from linkwork.core.mechanism.linkage import Linkage
 from linkwork.core.mechanism.part.guides import Slider
 from linkwork.core.mechanism.varied_numbers import number_named, with_numbers
 from linkwork.core.motion.model import model_of
 from linkwork.core.motion.sweeping import sweep
 from linkwork.core.textfile.reader import read_text
-from linkwork.synthesis.tasks.curve_file import out_of_bounds
+from linkwork.families.study.packages import check_packages
+from linkwork.synthesis.tasks.curve_file import FEWEST, out_of_bounds
 
 _POINTS = 64
 _MOST = 8
@@ -161,53 +166,186 @@ class AtlasFamily:
         return np.asarray(shapes / np.linalg.norm(shapes, axis=1, keepdims=True))
 
 
-@dataclass(frozen=True, kw_only=True, eq=False)
-class Nearest:
-    """A design of an atlas whose path is near a curve.
+@internal("designs", "index", "way", "curve")
+@dataclass(frozen=True, kw_only=True, eq=False, repr=False)
+class NearPath:
+    """A mechanism whose path resembles a curve.
 
-    ``distance``: the root of the mean square of the gaps, relative to the size of the curve;
-    ``way``: the place among the WAYS in which the curve is compared.
+    Parameters
+    ----------
+    number : int
+        Its rank, from 1.
+    distance : float
+        The root of the mean square of the gaps, relative to the size of the curve, which is the
+        root of the mean square distance from its centre.
+    designs : AtlasFamily
+        The family in the atlas.
+    index : int
+        Its place there.
+    way : int
+        The place among the WAYS in which the curve is compared.
+    curve : (N,) complex
+        [length]
+
+    Examples
+    --------
+    >>> import linkwork as lw
+    >>> path = lw.example("hoeken").sweep(step=5).trace("P")
+    >>> near = lw.synthesis.PathAtlas.shipped().nearest(path, 3)[0]
+    >>> near.distance < 0.1, bool(near.mechanism.sweep().certified.all())
+    (True, True)
     """
 
-    family: AtlasFamily
-    index: int
+    number: int
     distance: float
+    designs: AtlasFamily
+    index: int
     way: int
+    curve: ComplexArray
 
     @property
     def numbers(self) -> dict[str, float]:
-        """Its varied numbers [file units of the family]."""
-        values = self.family.numbers[self.index].tolist()
-        return dict(zip(self.family.names, values, strict=True))
+        """Its varied numbers in the atlas [file units of the family]."""
+        values = self.designs.numbers[self.index].tolist()
+        return dict(zip(self.designs.names, values, strict=True))
 
     @property
     def is_mirrored(self) -> bool:
-        """Whether the mirror image of the mechanism draws the curve."""
+        """Whether it is the mirror image of the mechanism in the atlas."""
         return WAYS[self.way][1]
 
+    @property
+    def family(self) -> str:
+        """The name of the mechanism in the atlas."""
+        return self.designs.title
 
-@dataclass(frozen=True, kw_only=True, eq=False)
+    @cached_property
+    def mechanism(self) -> Mechanism:
+        """The mechanism, placed on the curve as well as possible."""
+        return Mechanism(placed_on_curve(self, f"Near path {self.number}")[0])
+
+    def __repr__(self) -> str:
+        return f"<NearPath {self.number}: distance {self.distance:.3g}>"
+
+
+@internal("families")
+@dataclass(frozen=True, kw_only=True, eq=False, repr=False)
 class PathAtlas:
-    """Several families; ``unfinished``: sentences about stores that lack some of their designs."""
+    """Closed paths of many mechanisms, searched by shape.
+
+    Place, size, direction, timing and first point of a path do not count.
+
+    Parameters
+    ----------
+    families : tuple of AtlasFamily
+    unfinished : tuple of str
+        Sentences about stores that lacked some of their designs when it was made.
+
+    Examples
+    --------
+    >>> import linkwork as lw
+    >>> atlas = lw.synthesis.PathAtlas.shipped()
+    >>> square = [(0, 0), (50, 0), (100, 0), (100, 100), (0, 100), (0, 50)]
+    >>> len(atlas.nearest(square, 5))
+    5
+    """
 
     families: tuple[AtlasFamily, ...]
     unfinished: tuple[str, ...] = ()
 
-    def __len__(self) -> int:
-        return sum(map(len, self.families))
+    @classmethod
+    def shipped(cls) -> Self:
+        """The small atlas that is part of Linkwork."""
+        return cls.load(SHIPPED)
 
-    def nearest(self, curve: ComplexArray, count: int) -> list[Nearest]:
-        """The designs whose paths are nearest to a closed curve (N,), nearest first.
+    @classmethod
+    def load(cls, path: str | Path) -> Self:
+        """The atlas in a file of :meth:`save`.
+
+        Raises
+        ------
+        InputError
+            If it is no atlas.
+        """
+        try:
+            with np.load(BytesIO(as_path(path).read_bytes())) as stored:
+                count = 1 + max(int(name.partition(".")[0]) for name in stored.files)
+                parts = [{name: stored[f"{k}.{name}"] for name in _KEPT} for k in range(count)]
+        except FileNotFoundError:
+            raise InputError(f'there is no atlas "{path}"') from None
+        except (OSError, KeyError, ValueError, BadZipFile):
+            message = f'"{path}" is no atlas of paths: make one with "linkwork atlas --index'
+            raise InputError(f'{message} STORE -o FILE"') from None
+        return cls(
+            families=tuple(
+                AtlasFamily(
+                    title=str(part["title"]),
+                    mechanism=str(part["mechanism"]),
+                    point=str(part["point"]),
+                    names=tuple(map(str, part["names"])),
+                    numbers=part["numbers"],
+                    shapes=part["shapes"],
+                )
+                for part in parts
+            )
+        )
+
+    @classmethod
+    def of_stores(
+        cls, stores: Sequence[str | Path], progress: Callable[[float], None] | None = None
+    ) -> PathAtlas:
+        """The atlas of studies that keep the path of a point over a whole turn.
+
+        Parameters
+        ----------
+        stores : sequence of paths
+        progress : callable, optional
+            Called with the finished fraction; may raise an error to end the work.
+
+        Raises
+        ------
+        InputError
+            If a store is damaged, keeps no path, or has no closed path.
+        """
+        check_packages()
+        # curves are compared without studies, which load Numba: a second
+        from linkwork.synthesis.atlas.stored_paths import atlas_of_stores
+
+        return atlas_of_stores([as_path(store) for store in stores], progress)
+
+    def save(self, path: str | Path) -> None:
+        """Write the atlas to a file (.npz), completely or not at all."""
+        arrays = {
+            f"{k}.{name}": np.asarray(getattr(family, name))
+            for k, family in enumerate(self.families)
+            for name in _KEPT
+        }
+        file = BytesIO()
+        # half precision hardly compresses, and is read in a tenth of the time
+        np.savez(file, **arrays)  # type: ignore[arg-type]  # arrays alone
+        save_bytes(file.getvalue(), as_path(path))
+
+    def nearest(
+        self, curve: Sequence[Sequence[float]] | ComplexArray, count: int = 100
+    ) -> tuple[NearPath, ...]:
+        """The mechanisms whose paths are nearest to a closed curve, nearest first.
 
         Lengths of coefficients differ by no more than the coefficients: this lower bound of the
         distance chooses what is compared exactly, until no other design can be nearer.
+
+        Parameters
+        ----------
+        curve : sequence of (x, y), or complex array
+            Its corners in their order [length].
+        count : int
+
+        Raises
+        ------
+        InputError
+            For fewer than five points, all at one place, or numbers beyond 1e12 or below 1e-12.
         """
-        if problem := out_of_bounds(curve):
-            raise InputError(f"the curve {problem}")
-        shape = coefficients(curve[None])[0][0]
-        if not np.isfinite(shape).all():
-            raise InputError("the curve is one point: draw a curve that encloses an area")
-        goals = in_ways(shape)
+        z, count = _closed_curve(curve), whole_number("count", count, least=1)
+        goals = in_ways(coefficients(z[None])[0][0])
         bound = np.concatenate([family.bounds(goals) for family in self.families])
         first = np.cumsum([0, *map(len, self.families)])
         best: list[tuple[float, int, int]] = []
@@ -231,23 +369,49 @@ class PathAtlas:
                 break
             done, many = many, _MORE * many
         nearest = []
-        for far, k, way in best:
+        for number, (distance, k, way_of) in enumerate(best, start=1):
             place = int(np.searchsorted(first, k, side="right")) - 1
-            family, number = self.families[place], k - int(first[place])
-            nearest.append(Nearest(family=family, index=number, distance=far, way=way))
-        return nearest
+            nearest.append(
+                NearPath(
+                    number=number,
+                    distance=distance,
+                    designs=self.families[place],
+                    index=k - int(first[place]),
+                    way=way_of,
+                    curve=z,
+                )
+            )
+        return tuple(nearest)
 
-    def write(self, path: Path) -> None:
-        """Write the atlas to a file (.npz), completely or not at all."""
-        arrays = {
-            f"{k}.{name}": np.asarray(getattr(family, name))
-            for k, family in enumerate(self.families)
-            for name in _KEPT
-        }
-        file = BytesIO()
-        # half precision hardly compresses, and is read in a tenth of the time
-        np.savez(file, **arrays)  # type: ignore[arg-type]  # arrays alone
-        save_bytes(file.getvalue(), path)
+    def __len__(self) -> int:
+        return sum(map(len, self.families))
+
+    def __repr__(self) -> str:
+        return f"<PathAtlas of {len(self)} paths>"
+
+
+def _closed_curve(curve: object) -> ComplexArray:
+    """The corners (N,) of a closed curve, the first one once."""
+    try:
+        array = np.asarray(curve)
+    except ValueError:  # rows of different lengths
+        array = np.empty(0, dtype=object)
+    if array.dtype.kind == "c" and array.ndim == 1:
+        z = np.asarray(array, dtype=complex)
+    elif array.dtype.kind in "iuf" and array.ndim == 2 and array.shape[1] == 2:
+        z = np.asarray(array[:, 0] + 1j * array[:, 1])
+    else:
+        told = as_told(curve)
+        raise InputError(f"a curve is a list of points (x, y) or complex numbers, got {told}")
+    if len(z) > 1 and z[0] == z[-1]:
+        z = z[:-1]
+    if len(z) < FEWEST or not np.isfinite(z).all():
+        raise InputError(f"a curve needs {FEWEST} points or more, all finite: got {len(z)}")
+    if problem := out_of_bounds(z):
+        raise InputError(f"the curve {problem}")
+    if np.ptp(z.real) == np.ptp(z.imag) == 0.0:
+        raise InputError("the curve is one point: draw a curve that encloses an area")
+    return z
 
 
 def _smallest(bound: Array, count: int) -> IndexArray:
@@ -258,54 +422,20 @@ def _smallest(bound: Array, count: int) -> IndexArray:
     return np.asarray(some[np.argsort(bound[some], kind="stable")])
 
 
-def read_atlas(path: Path = SHIPPED) -> PathAtlas:
-    """The atlas in a file.
-
-    Raises
-    ------
-    InputError
-        If it is no atlas.
-    """
-    try:
-        with np.load(BytesIO(path.read_bytes())) as stored:
-            count = 1 + max(int(name.partition(".")[0]) for name in stored.files)
-            parts = [{name: stored[f"{k}.{name}"] for name in _KEPT} for k in range(count)]
-    except FileNotFoundError:
-        raise InputError(f'there is no atlas "{path}"') from None
-    except (OSError, KeyError, ValueError, BadZipFile):
-        message = (
-            f'"{path}" is no atlas of paths: make one with "linkwork atlas --index STORE -o FILE"'
-        )
-        raise InputError(message) from None
-    return PathAtlas(
-        families=tuple(
-            AtlasFamily(
-                title=str(part["title"]),
-                mechanism=str(part["mechanism"]),
-                point=str(part["point"]),
-                names=tuple(map(str, part["names"])),
-                numbers=part["numbers"],
-                shapes=part["shapes"],
-            )
-            for part in parts
-        )
-    )
-
-
 # ----------------------------------------------------------------------
 # A design of an atlas, moved, turned, enlarged and if need be mirrored onto a curve.
 
 
-def placed_on_curve(near: Nearest, curve: ComplexArray, name: str) -> tuple[Linkage, float]:
-    """The mechanism whose path lies on a closed curve (N,) as well as possible, and the root of the
-    mean square of the gaps [length].
+def placed_on_curve(near: NearPath, name: str) -> tuple[Linkage, float]:
+    """The mechanism whose path lies on its curve as well as possible, and the root of the mean
+    square of the gaps [length].
 
     Raises
     ------
     InputError
         If its file has other things than points, links, lengths, angles, sliders and one crank.
     """
-    described = read_text(near.family.mechanism, name).description
+    described = read_text(near.designs.mechanism, name).description
     if not isinstance(described, Linkage) or len(described.inputs) != 1:
         raise InputError("an atlas can place mechanisms of points and links with one input only")
     others = sorted({type(part).title for part in described.parts if not isinstance(part, Slider)})
@@ -317,9 +447,9 @@ def placed_on_curve(near: Nearest, curve: ComplexArray, name: str) -> tuple[Link
     assert isinstance(design, Linkage)
     motion = sweep(model_of(design), certify=False)
     mirrored = near.is_mirrored
-    path = motion.trace(near.family.point)[:-1]
+    path = motion.trace(near.designs.point)[:-1]
     shape, centre, size = coefficients((path.conj() if mirrored else path)[None])
-    goals, goal, extent = coefficients(curve[None])
+    goals, goal, extent = coefficients(near.curve[None])
     back = WAYS[near.way][0]
     travelled = in_ways(goals[0])[1 if back else 0]
     _, shift_along, turn = distances(shape, travelled)
@@ -354,7 +484,3 @@ def placed_on_curve(near: Nearest, curve: ComplexArray, name: str) -> tuple[Link
         inputs=(crank,),
     )
     return placed, gap
-
-
-# ----------------------------------------------------------------------
-# An atlas of the paths that studies have stored.

@@ -196,16 +196,23 @@ def sampled_dyads(points: ComplexArray, angles: Array, samples: int = _SAMPLES) 
             parts.append(arc.start + share * (arc.stop - arc.start))
         directions = np.concatenate(parts)
     vertex = complex(points.mean()) if curve is None else curve.pole
-    many = len(directions)
-    lines = np.stack([np.full(many, vertex), np.exp(1j * directions)], axis=1)
-    d, theta = np.tile(points, (many, 1)), np.tile(angles, (many, 1))
-    solved = solve_on_lines(d, theta, lines)
-    dyads = DyadSet.of_solutions(solved, PoseSet(points=d, turns=np.exp(1j * theta)))
+    dyads = _dyads_on_lines(vertex, np.exp(1j * directions), points, angles)
     away = np.abs(dyads.fixed - vertex) > _AT_POLE * float(np.abs(points - points.mean()).max())
     pinned = dyads.take((dyads.kind == 0) & away)
     # every line finds the same RP dyad
     sliding = np.flatnonzero(dyads.kind == 2)[:1]
     return DyadSet.joined([pinned, dyads.take(sliding)]).of_one_task()
+
+
+def _dyads_on_lines(
+    through: complex, directions: ComplexArray, points: ComplexArray, angles: Array
+) -> DyadSet:
+    """The dyads whose fixed pivots are on lines through a point, each line as a task of its own."""
+    many = len(directions)
+    lines = np.stack([np.full(many, through), directions], axis=1)
+    d, theta = np.tile(points, (many, 1)), np.tile(angles, (many, 1))
+    solved = solve_on_lines(d, theta, lines)
+    return DyadSet.of_solutions(solved, PoseSet(points=d, turns=np.exp(1j * theta)))
 
 
 def dyads_with_pivots(
@@ -220,10 +227,7 @@ def dyads_with_pivots(
     """
     nearest = []
     for pivot in pivots:
-        lines = np.stack([np.full(len(_THROUGH), pivot), _THROUGH], axis=1)
-        d, theta = np.tile(points, (len(lines), 1)), np.tile(angles, (len(lines), 1))
-        solved = solve_on_lines(d, theta, lines)
-        dyads = DyadSet.of_solutions(solved, PoseSet(points=d, turns=np.exp(1j * theta)))
+        dyads = _dyads_on_lines(pivot, _THROUGH, points, angles)
         away = np.abs(dyads.fixed - pivot)
         near = np.flatnonzero((dyads.kind == 0) & (away < reach))
         order = np.lexsort([away[near], dyads.refusal[near] != Refusal.NONE.code])

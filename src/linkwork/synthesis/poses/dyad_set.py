@@ -234,59 +234,44 @@ def _made(crank: DyadSet, other: DyadSet, poses: PoseSet) -> Candidates:
     """The mechanisms of dyads, of which the first carries A: a crank, or a guide of a pivot."""
     d, e = poses.points[crank.task], poses.turns[crank.task]
     kind = _MADE[int(crank.kind[0]), int(other.kind[0])]
-    if kind is LoopKind.OLDHAM:
-        return _couplings(crank, other, poses)
     # the normal is on the left of the direction
-    moving, direction = other.moving, -1j * other.normal
-    if kind.body_line:
+    a, b, along_a, along = crank.moving, other.moving, -1j * crank.normal, -1j * other.normal
+    error = np.maximum(crank.error, other.error)
+    pins_a, pins = ((dyads.fixed[:, None] - d) / e for dyads in (crank, other))
+    if kind is LoopKind.OLDHAM:
+        # A and B on the body's lines, as far from their crossing as the blocks come and to the
+        # same side
+        n, m = crank.normal, other.normal
+        sine = cross(n, m)
+        centre = (dot(n, a) * (-1j * m) + dot(m, b) * (1j * n)) / sine
+        reach_a, reach = _reach(along_a, pins_a, centre), _reach(along, pins, centre)
+        a, b = centre + reach_a * along_a, centre + reach * along
+        seen = np.abs(b - a) / (b - a)
+        along_a, along = along_a * np.sign(reach_a) * seen, along * np.sign(reach) * seen
+        # the crossing of two lines moves farther than these
+        error = 4.0 * error / np.abs(sine)
+    elif kind.body_line:
         # of the body's line: as far from the foot of A as the block comes, and to the same side
-        pin = (other.fixed[:, None] - d) / e - crank.moving[:, None]
-        reach = dot(direction[:, None], pin)
-        reach = np.take_along_axis(reach, np.abs(reach).argmax(axis=1)[:, None], axis=1)[:, 0]
-        direction = direction * np.sign(reach)
-        away = dot(other.normal, moving - crank.moving) * other.normal + np.abs(reach) * direction
-        moving, direction = crank.moving + away, direction * np.abs(away) / away
+        reach = _reach(along, pins, a)
+        along = along * np.sign(reach)
+        away = dot(other.normal, b - a) * other.normal + np.abs(reach) * along
+        b, along = a + away, along * np.abs(away) / away
     return Candidates(
         kind=kind,
         fixed_a=crank.fixed,
         fixed_b=other.fixed,
-        direction=direction,
-        moving_a=d + crank.moving[:, None] * e,
-        moving_b=d + moving[:, None] * e,
-        guided=d,
-        error=np.maximum(crank.error, other.error),
-        miss=np.zeros(len(crank)),
-        direction_a=-1j * crank.normal,
-    )
-
-
-def _couplings(first: DyadSet, second: DyadSet, poses: PoseSet) -> Candidates:
-    """Oldham couplings: A and B on the body's lines, as far from their crossing as the blocks come
-    and to the same side.
-    """
-    d, e = poses.points[first.task], poses.turns[first.task]
-    n, m = first.normal, second.normal
-    sine = cross(n, m)
-    centre = (dot(n, first.moving) * (-1j * m) + dot(m, second.moving) * (1j * n)) / sine
-    ends, lines = [], []
-    for dyads in (first, second):
-        along = -1j * dyads.normal
-        reach = dot(along[:, None], (dyads.fixed[:, None] - d) / e - centre[:, None])
-        reach = np.take_along_axis(reach, np.abs(reach).argmax(axis=1)[:, None], axis=1)[:, 0]
-        ends.append(centre + reach * along)
-        lines.append(along * np.sign(reach))
-    a, b = ends
-    seen = np.abs(b - a) / (b - a)
-    return Candidates(
-        kind=LoopKind.OLDHAM,
-        fixed_a=first.fixed,
-        fixed_b=second.fixed,
-        direction=lines[1] * seen,
+        direction=along,
         moving_a=d + a[:, None] * e,
         moving_b=d + b[:, None] * e,
         guided=d,
-        # the crossing of two lines moves farther than these
-        error=4.0 * np.maximum(first.error, second.error) / np.abs(sine),
-        miss=np.zeros(len(first)),
-        direction_a=lines[0] * seen,
+        error=error,
+        miss=np.zeros(len(crank)),
+        direction_a=along_a,
     )
+
+
+def _reach(along: ComplexArray, pins: ComplexArray, start: ComplexArray) -> Array:
+    """The farthest places of pins (D, N) along lines (D,) from their starts, with their signs."""
+    places = dot(along[:, None], pins - start[:, None])
+    farthest = np.abs(places).argmax(axis=1)[:, None]
+    return np.asarray(np.take_along_axis(places, farthest, axis=1)[:, 0])

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, fields, replace
 from functools import cache
 from itertools import combinations
 
@@ -213,15 +213,6 @@ class NormalPoses:
         # points are at most 1 from the centre: no factor of an entry exceeds 2
         return np.asarray(_ROUNDINGS * np.maximum(entries, 2.0))
 
-    def take(self, index: IndexArray | slice) -> NormalPoses:
-        """Some of the bodies."""
-        return NormalPoses(
-            points=self.points[index],
-            turns=self.turns[index],
-            centre=self.centre[index],
-            size=self.size[index],
-        )
-
 
 def quadrics(x: AnyArray) -> AnyArray:
     """Both quadrics, (…, 2), at x (…, 8), real or complex: a B - Ḡ A by real and imaginary part."""
@@ -273,8 +264,8 @@ class DyadProofs:
         """The dyads, with the solutions of another attempt where it proved more."""
         better = other.proved.sum(axis=1) > self.proved[index].sum(axis=1)
         changes = {}
-        for name in ("x", "is_real", "proved", "error", "condition", "complete"):
-            values = getattr(self, name).copy()
+        for name, known in vars(self).items():
+            values = known.copy()
             values[index[better]] = getattr(other, name)[better]
             changes[name] = values
         return replace(self, **changes)
@@ -439,8 +430,8 @@ class Refusal(CodedEnum):
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
-class Dyads:
-    """The solutions for N tasks, four each.
+class Dyads(DyadProofs):
+    """The solutions for N tasks, four each, and why some are no proved dyads.
 
     Parameters
     ----------
@@ -460,12 +451,7 @@ class Dyads:
     poses : NormalPoses
     """
 
-    x: ComplexArray
-    is_real: BoolArray
     refusal: StatusArray
-    error: Array
-    condition: Array
-    complete: BoolArray
     poses: NormalPoses
 
     @property
@@ -534,68 +520,55 @@ def _solve_in_parts(points: ComplexArray, angles: Array, further: Array) -> Dyad
         _solve_part(points[part], angles[part], further[part])
         for part in (slice(k, k + _PART) for k in range(0, len(points), _PART))
     ]
-    fields = ("x", "is_real", "refusal", "error", "condition", "complete")
+    arrays = [field.name for field in fields(Dyads) if field.name != "poses"]
     return Dyads(
-        **{name: np.concatenate([getattr(part, name) for part in parts]) for name in fields},
+        **{name: np.concatenate([getattr(part, name) for part in parts]) for name in arrays},
         poses=NormalPoses.of(points, angles),
     )
 
 
 def _solve_part(points: ComplexArray, angles: Array, further: Array) -> Dyads:
-    poses = NormalPoses.of(points, angles)
-    rows = np.concatenate([poses.rows(), further], axis=1)
-    left, sizes, right = np.linalg.svd(rows)
-    family = sizes[:, -1] < RANK_TOLERANCE * sizes[:, 0]
-    null = right[:, FIVE:].transpose(0, 2, 1)
-    with np.errstate(divide="ignore", invalid="ignore"):
-        inverse = right[:, :FIVE].transpose(0, 2, 1) / sizes[:, None] @ left.transpose(0, 2, 1)
-    basis = _Basis(rows=rows, null=null, inverse=np.nan_to_num(inverse))
-    proofs = _prove(basis, _view(0))
-    for view in map(_view, range(1, _VIEWS)):
-        again = np.flatnonzero(~proofs.complete & ~family)
-        if not again.size:
-            break
-        long = poses.take(again).in_extended_precision(points[again], angles[again]).rows()
-        precise = np.concatenate([long, further[again]], axis=1)
-        proofs = proofs.with_better(again, _prove(basis.take(again), view, precise))
+    proofs, family = _proved(points, angles, further)
     refusal = np.where(proofs.is_real, Refusal.NONE.code, Refusal.COMPLEX.code)
     refusal[~proofs.proved] = Refusal.COINCIDENT.code
     flat = np.abs(proofs.x[..., :5]).max(axis=2) * _FAR < np.abs(proofs.x).max(axis=2)
     refusal[flat] = Refusal.NO_JOINT.code
     refusal[family] = Refusal.FAMILY.code
-    return Dyads(
-        x=proofs.x,
+    known = replace(
+        proofs,
         is_real=proofs.is_real & ~flat & ~family[:, None],
-        refusal=refusal.astype(np.int8),
         error=np.where(proofs.proved, proofs.error, np.inf),
-        condition=proofs.condition,
         complete=proofs.complete & ~family,
-        poses=poses,
     )
+    poses = NormalPoses.of(points, angles)
+    return Dyads(**vars(known), refusal=refusal.astype(np.int8), poses=poses)
 
 
-@dataclass(frozen=True, kw_only=True, eq=False)
-class _Basis:
-    """Linear rows (N, 5, 8), their null space (N, 8, 3) and pseudo-inverse (N, 8, 5)."""
+def _proved(
+    points: ComplexArray, angles: Array, further: Array, view: int = 0
+) -> tuple[DyadProofs, BoolArray]:
+    """The four solutions, and which tasks have infinitely many.
 
-    rows: Array
-    null: Array
-    inverse: Array
-
-    def take(self, index: IndexArray) -> _Basis:
-        return _Basis(
-            rows=self.rows[index],
-            null=self.null[index],
-            inverse=self.inverse[index],
-        )
-
-
-def _prove(basis: _Basis, view: Array, precise: AnyArray | None = None) -> DyadProofs:
-    """The four solutions, from conics seen in one of the views; ``precise``: rows, if extended."""
-    null = basis.null @ view
+    Tasks without four proofs are solved again with conics seen from elsewhere, in extended
+    precision.
+    """
+    poses = NormalPoses.of(points, angles)
+    rows = np.concatenate([poses.rows(), further], axis=1)
+    left, sizes, right = np.linalg.svd(rows)
+    family = sizes[:, -1] < RANK_TOLERANCE * sizes[:, 0]
+    with np.errstate(divide="ignore", invalid="ignore"):
+        inverse = right[:, :FIVE].transpose(0, 2, 1) / sizes[:, None] @ left.transpose(0, 2, 1)
+    null = right[:, FIVE:].transpose(0, 2, 1) @ _view(view)
     # the quadrics' second derivatives are those of their gradients
-    identity = np.eye(COORDINATES)
-    second = quadric_gradients(identity).transpose(1, 0, 2)  # (2, 8, 8)
+    second = quadric_gradients(np.eye(COORDINATES)).transpose(1, 0, 2)  # (2, 8, 8)
     first, other = (0.5 * null.transpose(0, 2, 1) @ form @ null for form in second)
-    y = common_points(first, other)
-    return prove_dyads(basis.rows, null, basis.inverse, y, precise)
+    precise: AnyArray | None = None
+    if view:
+        long = poses.in_extended_precision(points, angles).rows()
+        precise = np.concatenate([long, further], axis=1)
+    proofs = prove_dyads(rows, null, np.nan_to_num(inverse), common_points(first, other), precise)
+    again = np.flatnonzero(~proofs.complete & ~family)
+    if again.size and view + 1 < _VIEWS:
+        other_view, _ = _proved(points[again], angles[again], further[again], view + 1)
+        proofs = proofs.with_better(again, other_view)
+    return proofs, family

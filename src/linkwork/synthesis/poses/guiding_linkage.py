@@ -24,6 +24,8 @@ _STEPS = 100  # of a displacement
 _ON_LINE = 1e-9  # of a coupler's length: a pivot on its line
 _SAME_TURN = 1e-12  # relative: the rounding of a few angles
 _GUIDE = "slide"
+#: Of each side: moving and fixed pivot, points of a line on ground, names of slider and block.
+_SIDES = (("A", "A0", "UV", "slide_a", "block_a"), ("B", "B0", "ST", _GUIDE, "block"))
 _GROUND_POINTS = ("A0", "B0", "U", "V", "S", "T")
 _MOST_LISTED = 9  # positions whose inputs are listed
 _DIGITS = 6
@@ -132,56 +134,53 @@ class Design:
 
 
 def linkage_of(design: Design, task: Task, name: str, output: str = "") -> Linkage:
-    """The description of a design for a task; the driven link is the crank.
+    """The description of a design for a task; of crank and rocker the driven one is the crank.
 
     ``output``: the name of the output of a function, whose structural error is an output of the
     mechanism.
     """
-    if not design.kind.has_crank:
-        return _guided(design, task, name)
-    z, ground = design.points, _ground_names(design)
-    crank, rocker = _bar(design, Drive.A0), _bar(design, Drive.B0)
-    if design.drive is Drive.B0:
-        crank, rocker = rocker, crank
+    z, kind, ground = design.points, design.kind, _ground_names(design)
     guided = next((key for key in ("A", "B") if z[key] == z["P"]), "P")
-    coupler = ("A", "B") if guided != "P" else ("A", "B", "P")
-    foot = ("C",) if "C" in z else ()
-    bars = [crank, *combinations(coupler, 2)]
-    links: dict[str, tuple[str, ...]] = {
-        GROUND: ("A0", "B0"),
+    corners = ("A", "B") if guided != "P" else ("A", "B", "P")
+    feet = tuple(key for key in ("C", "K") if key in z)
+    turning = 2 if kind is LoopKind.FOUR_BAR else int(kind.has_crank)
+    arms: list[tuple[str, ...]] = [_bar(design, side) for side in (Drive.A0, Drive.B0)[:turning]]
+    if design.drive is Drive.B0:
+        arms.reverse()
+    crank, rocker = [*arms, (), ()][:2]  # none of guided sides
+    sliders = []
+    way: tuple[str, str]
+    for moving, fixed, line, slider, block in _SIDES[turning:]:
+        if fixed in kind.pivots:
+            way, carried, on = (feet[0] if feet else "A", moving), fixed, "coupler"
+        else:
+            way, carried, on = (ground[line[0]], ground[line[1]]), moving, GROUND
+        sliders.append(Slider(name=slider, link=block, points=(carried,), on=on, line=way))
+    grounded = [ground[key] for key in (*kind.pivots, *"UVST") if key in z]
+    links = {
+        GROUND: tuple(dict.fromkeys(grounded)),
         "crank": crank,
-        "coupler": coupler,
+        "coupler": (*corners, *feet),
         "rocker": rocker,
+        **{slider.link: slider.points for slider in sliders},
     }
-    sliders: tuple[Slider, ...] = ()
-    if design.kind is LoopKind.FOUR_BAR:
-        bars.append(rocker)
-    elif design.kind is LoopKind.INVERTED:
-        del links["rocker"]
-        links |= {
-            "crank": _bar(design, Drive.A0),
-            "coupler": (*coupler, *foot),
-            "block": ("B0",),
-        }
-        bars = [_bar(design, Drive.A0), *combinations(coupler, 2)]
-        bars += [(end, "C") for end in "AB" if foot]
-        line = ("C" if foot else "A", "B")
-        sliders = (Slider(name=_GUIDE, link="block", points=("B0",), on="coupler", line=line),)
-    else:
-        del links["rocker"]
-        start, end = (ground[key] for key in "ST")
-        links |= {GROUND: _distinct("A0", start, end), "block": ("B",)}
-        sliders = (Slider(name=_GUIDE, link="block", points=("B",), on=GROUND, line=(start, end)),)
+    sides = [*combinations(corners, 2), *((end, key) for key in feet for end in "AB")]
+    bars = [bar for bar in (crank, *sides, rocker) if bar]
     formula = _error_formula(design, task, output)
     return Linkage(
         name=name,
         purpose=_purpose(design, task),
         length=task.length,
         angle=task.angle,
-        points=_point_places(design, guided),
-        links=links,
+        points={
+            key: (place.real, place.imag)
+            for key, place in z.items()
+            # without P where that is a pivot
+            if ground.get(key, key) == key and (key != "P" or guided == "P")
+        },
+        links={link: points for link, points in links.items() if points},
         lengths={f"{one} {other}": abs(z[other] - z[one]) for one, other in bars},
-        sliders=sliders,
+        sliders=tuple(sliders),
         inputs=(_input(design, task.angle),),
         trace=(guided,),
         outputs={"structural_error": formula} if formula else {},
@@ -194,20 +193,6 @@ def _ground_names(design: Design) -> dict[str, str]:
     """
     z, first = design.points, dict[complex, str]()
     return {key: first.setdefault(z[key], key) for key in _GROUND_POINTS if key in z}
-
-
-def _distinct(*names: str) -> tuple[str, ...]:
-    return tuple(dict.fromkeys(names))
-
-
-def _point_places(design: Design, guided: str) -> dict[str, tuple[float, float]]:
-    """The points of the file: without P where that is a pivot."""
-    names = _ground_names(design)
-    return {
-        key: (place.real, place.imag)
-        for key, place in design.points.items()
-        if names.get(key, key) == key and (key != "P" or guided == "P")
-    }
 
 
 def _error_formula(design: Design, task: Task, output: str) -> str:
@@ -229,42 +214,6 @@ def _first_output(design: Design) -> float:
         return float(np.angle(z["B"] - z["B0"]))
     line = z["T"] - z["S"]
     return float(dot(np.asarray(line / abs(line)), np.asarray(z["B"] - z["S"])))
-
-
-def _guided(design: Design, task: Task, name: str) -> Linkage:
-    """The description of a mechanism of two guides."""
-    z, kind = design.points, design.kind
-    guided = next((key for key in ("A", "B") if z[key] == z["P"]), "P")
-    corners = ("A", "B") if guided != "P" else ("A", "B", "P")
-    foot = tuple(key for key in ("C", "K") if key in z)
-    names = _ground_names(design)
-    ground = [names[key] for key in (*kind.pivots, *"UVST") if key in z]
-    ends = {"A": "K", "B": foot[0] if foot else "A"}  # of the body's lines through A and B
-    sliders = []
-    for moving, pivot, line, label in (("A", "A0", "UV", "slide_a"), ("B", "B0", "ST", _GUIDE)):
-        block = "block_a" if moving == "A" else "block"
-        if pivot in kind.pivots:
-            way, carried, on = (ends[moving], moving), pivot, "coupler"
-        else:
-            way, carried, on = (names[line[0]], names[line[1]]), moving, GROUND
-        sliders.append(Slider(name=label, link=block, points=(carried,), on=on, line=way))
-    bars = [*combinations(corners, 2), *((end, key) for key in foot for end in "AB")]
-    return Linkage(
-        name=name,
-        purpose=_purpose(design, task),
-        length=task.length,
-        angle=task.angle,
-        points=_point_places(design, guided),
-        links={
-            GROUND: _distinct(*ground),
-            "coupler": (*corners, *foot),
-            **{slider.link: slider.points for slider in sliders},
-        },
-        lengths={f"{one} {other}": abs(z[other] - z[one]) for one, other in bars},
-        sliders=tuple(sliders),
-        inputs=(_input(design, task.angle),),
-        trace=(guided,),
-    )
 
 
 def _purpose(design: Design, task: Task) -> str:

@@ -66,29 +66,32 @@ def _halton(k: CountArray, base: int) -> Array:
 def through_fixed(pivots: ComplexArray, points: ComplexArray, turns: ComplexArray) -> DyadSet:
     """The RR dyads with fixed pivots (K,): one each for three poses, several for two."""
     images = (pivots[:, None] - points) * turns.conj()
-    far = np.abs(pivots) + np.abs(points).max()
-    if len(points) == 2:
-        middle, across = images.mean(axis=1), 1j * (images[:, 1] - images[:, 0])
-        moving = (middle[:, None] + across[:, None] * _SHARES).ravel()
-        fixed, error = np.repeat(pivots, len(_SHARES)), _LOSS * (np.repeat(far, len(_SHARES)))
-        error = error + _LOSS * np.abs(moving)
-    else:
-        moving, error = circumcentres(images, far)
-        fixed = pivots
+    fixed, moving, error = _other_pivots(pivots, images, points)
     return DyadSet.made(0, moving, fixed, error)
 
 
 def through_moving(moving: ComplexArray, points: ComplexArray, turns: ComplexArray) -> DyadSet:
     """The RR dyads with moving pivots (K,) in the body's frame."""
     images = points + moving[:, None] * turns
-    far = np.abs(moving) + np.abs(points).max()
-    if len(points) == 2:
-        middle, across = images.mean(axis=1), 1j * (images[:, 1] - images[:, 0])
-        fixed = (middle[:, None] + across[:, None] * _SHARES).ravel()
-        moving_pivots, error = np.repeat(moving, len(_SHARES)), _LOSS * np.repeat(far, len(_SHARES))
-        return DyadSet.made(0, moving_pivots, fixed, error + _LOSS * np.abs(fixed))
-    fixed, error = circumcentres(images, far)
+    moving, fixed, error = _other_pivots(moving, images, points)
     return DyadSet.made(0, moving, fixed, error)
+
+
+def _other_pivots(
+    pivots: ComplexArray, images: ComplexArray, points: ComplexArray
+) -> tuple[ComplexArray, ComplexArray, Array]:
+    """Pivots, the other pivots of their dyads, and bounds of the errors of these.
+
+    ``images`` (K, N): the pivots in all poses, as the other body sees them. Of two poses the other
+    pivot is anywhere on the bisector.
+    """
+    far = np.abs(pivots) + np.abs(points).max()
+    if len(points) > 2:
+        return pivots, *circumcentres(images, far)
+    middle, across = images.mean(axis=1), 1j * (images[:, 1] - images[:, 0])
+    others = (middle[:, None] + across[:, None] * _SHARES).ravel()
+    pivots, far = (np.repeat(x, len(_SHARES)) for x in (pivots, far))
+    return pivots, others, _LOSS * far + _LOSS * np.abs(others)
 
 
 def timed_dyads(

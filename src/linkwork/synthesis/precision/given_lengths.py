@@ -27,15 +27,17 @@ from linkwork.circuits.homotopy.path_tracking import (
 from linkwork.circuits.homotopy.polynomial_system import distinct_solutions
 from linkwork.core.foundation.arrays import ComplexArray, solutions
 from linkwork.core.foundation.files import cache_folder, keep_arrays
-from linkwork.synthesis.precision.four_bar_positions import FourBarPositions
+from linkwork.synthesis.loops.candidates import Candidates
 from linkwork.synthesis.precision.position_equations import HeldValue
 from linkwork.synthesis.precision.positions import PrecisionPositions
 from linkwork.synthesis.precision.problem import CONDITIONS, PLACES, PrecisionProblem, exchange_legs
 from linkwork.synthesis.precision.proofs import prove_linkages
 from linkwork.synthesis.precision.solving import (
+    PrecisionFourBars,
     SparingTracker,
     as_arrays,
     compiled_pays,
+    four_bars_of,
     member_of_arrays,
 )
 
@@ -51,16 +53,16 @@ _PROVED = 120  # those that are proved
 
 def four_bars_with_lengths(
     positions: PrecisionPositions,
-    solved: Sequence[FourBarPositions],
+    solved: Sequence[PrecisionFourBars],
     progress: Callable[[float], None] | None = None,
-) -> FourBarPositions:
+) -> Candidates:
     """The four-bars with given lengths near solved ones, at most 120 different ones.
 
     Parameters
     ----------
     positions : PrecisionPositions
         The positions of the task, without drawn ones, and its lengths.
-    solved : sequence of FourBarPositions
+    solved : sequence of PrecisionFourBars
         Four-bars through these positions.
     progress : callable, optional
         Called with the finished fraction; may raise an error to end the work.
@@ -77,15 +79,15 @@ def four_bars_with_lengths(
     proofs = []
     for k, linkage in enumerate(moved):
         proof = prove_linkages(positions, linkage[None] * size, _held(positions, linkage))
-        proofs.append(FourBarPositions.of(positions, proof))
+        proofs.append(four_bars_of(positions, proof))
         if progress is not None:
             progress((k + 1) / len(moved))
     if not proofs:
         return solved[0].take(np.zeros(0, dtype=np.intp))
-    return FourBarPositions.joined(proofs)
+    return Candidates.joined(proofs)
 
 
-def _linkages(positions: PrecisionPositions, bars: FourBarPositions) -> ComplexArray:
+def _linkages(positions: PrecisionPositions, bars: PrecisionFourBars) -> ComplexArray:
     """x, x̄, a, ā, y, ȳ, b, b̄ of proved four-bars, (B, 8) [length]."""
     first = int(positions.order[0])
     pivots = (bars.moving_a[:, first], bars.fixed_a, bars.moving_b[:, first], bars.fixed_b)

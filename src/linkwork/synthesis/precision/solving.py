@@ -30,17 +30,17 @@ from linkwork.circuits.homotopy.path_tracking import (
     polish_ends,
     track,
 )
-from linkwork.core.foundation.arrays import AnyArray, ComplexArray, IndexArray
+from linkwork.core.foundation.arrays import AnyArray, BoolArray, ComplexArray, IndexArray
 from linkwork.core.foundation.errors import InputError
 from linkwork.core.foundation.loading import cores
 from linkwork.core.foundation.rounding import ALMOST_REAL
 from linkwork.core.foundation.statuses import Completeness
 from linkwork.families import paths
 from linkwork.families.compiled.code_cache import PATH_LOOP, is_compiled, is_loaded
-from linkwork.synthesis.precision.four_bar_positions import FourBarPositions
+from linkwork.synthesis.loops.candidates import Candidates, LoopKind
 from linkwork.synthesis.precision.positions import PrecisionPositions
 from linkwork.synthesis.precision.problem import CONDITIONS, PrecisionProblem, cognates
-from linkwork.synthesis.precision.proofs import prove_linkages
+from linkwork.synthesis.precision.proofs import ProvedLinkages, prove_linkages
 
 # A path takes about 0.3 ms compiled and 2 ms in NumPy, where a round of a batch takes 0.8 ms.
 _FEW = 100  # paths: recording a program takes as long in NumPy
@@ -206,7 +206,7 @@ _LEAST_SIZE = 0.1  # of the size of the positions: numbers are compared relative
 
 
 @dataclass(frozen=True, kw_only=True, eq=False, repr=False)
-class PrecisionFourBars(FourBarPositions):
+class PrecisionFourBars(Candidates):
     """Real four-bars through positions, and how many solutions there are.
 
     Parameters
@@ -222,6 +222,11 @@ class PrecisionFourBars(FourBarPositions):
     triple: IndexArray
     real: int
     roots: ParameterRoots
+
+    @property
+    def proved(self) -> BoolArray:
+        """Which four-bars are proved, (D,): errors of the others are infinite."""
+        return np.isfinite(self.error)
 
     def __repr__(self) -> str:
         roots = self.roots
@@ -278,4 +283,25 @@ def four_bars_through(
         others = cognates(real)[: 2 - problem.pivots]
         real, triple = np.concatenate([real, *others]), np.tile(triple, 1 + len(others))
     proofs = prove_linkages(positions, real * size)
-    return PrecisionFourBars.of(positions, proofs, triple=triple, real=count, roots=roots)
+    bars = four_bars_of(positions, proofs)
+    return PrecisionFourBars(**vars(bars), triple=triple, real=count, roots=roots)
+
+
+def four_bars_of(positions: PrecisionPositions, proofs: ProvedLinkages) -> Candidates:
+    """Linkages with their proofs as four-bars in the positions, in the order of the task."""
+    x, a, y, b = proofs.legs.T
+    points = np.concatenate([[positions.start], positions.poses, positions.points])
+    moving = np.concatenate([np.stack([x, y], axis=1)[:, None], proofs.moving], axis=1)
+    places = np.argsort(positions.order)[: positions.listed]
+    moving = (moving + points[:, None])[:, places]
+    return Candidates(
+        kind=LoopKind.FOUR_BAR,
+        fixed_a=positions.start + a,
+        fixed_b=positions.start + b,
+        direction=np.zeros(len(moving), dtype=complex),
+        moving_a=moving[:, :, 0],
+        moving_b=moving[:, :, 1],
+        guided=np.broadcast_to(points[places], moving.shape[:2]).copy(),
+        error=proofs.error,
+        miss=np.zeros(len(moving)),
+    )

@@ -14,7 +14,6 @@ from linkwork.core.foundation.statuses import Completeness
 from linkwork.synthesis.lane_problems import part_of
 from linkwork.synthesis.loops.candidates import Candidates, LoopKind
 from linkwork.synthesis.poses.pose_families import drawn_within, is_tolerant
-from linkwork.synthesis.precision.four_bar_positions import FourBarPositions
 from linkwork.synthesis.precision.given_lengths import four_bars_with_lengths, solved_member
 from linkwork.synthesis.precision.positions import GivenLength, PrecisionPositions
 from linkwork.synthesis.precision.sampling import positions_with_samples
@@ -140,7 +139,7 @@ def _fitted(
         candidates=_candidates(points, fitted),
         complex=number,
         real=number,
-        proved=sum(int(part.proved.sum()) for part in fitted),
+        proved=sum(int(np.isfinite(part.error).sum()) for part in fitted),
         completeness=Completeness.SAMPLED,
         message=f"a sample: four-bars with the given lengths, from those of {tasks} tasks"
         + reason
@@ -206,7 +205,7 @@ def _check_lengths(task: Task, lengths: Sequence[GivenLength], near: _Near) -> N
         task.refuse([(("given", "lengths"), f"{message}: leave some out")])
 
 
-def _candidates(points: ComplexArray, solved: Sequence[FourBarPositions]) -> tuple[Candidates, ...]:
+def _candidates(points: ComplexArray, solved: Sequence[Candidates]) -> tuple[Candidates, ...]:
     return tuple(
         Candidates(
             kind=LoopKind.FOUR_BAR,

@@ -16,7 +16,7 @@ from linkwork.core.mechanism.description import Description
 from linkwork.core.mechanism.linkage import Draft, Linkage
 from linkwork.core.mechanism.varied_numbers import VariedNumber
 from linkwork.core.motion.model import model_of
-from linkwork.synthesis.atlas.path_atlas import Nearest, placed_on_curve, read_atlas
+from linkwork.synthesis.atlas.path_atlas import NearPath, PathAtlas, placed_on_curve
 from linkwork.synthesis.improvement.curves import point_named
 from linkwork.synthesis.improvement.improving import numbers_to_vary
 from linkwork.synthesis.improvement.proved_design import ImprovedDesign, proved_design
@@ -161,11 +161,11 @@ def nearest(
         raise InputError(f"a curve needs {_FEWEST} positions or more, got {len(points)}")
     curve: ComplexArray = np.array([complex(*point) for point in points])
     progress(0.0)
-    atlas = read_atlas()
+    atlas = PathAtlas.shipped()
     progress(_READ)
     designs = []
     for k, near in enumerate(atlas.nearest(curve, count), start=1):
-        designs.append(_near(near, curve, task))
+        designs.append(_near(near, task))
         progress(_READ + (1.0 - _READ) * k / count)
     return tuple(designs)
 
@@ -289,11 +289,9 @@ def _points(task: Task) -> tuple[Point, ...]:
     return tuple(position.point for position in task.positions)
 
 
-def _near(near: Nearest, curve: ComplexArray, task: Task) -> SuggestedDesign:
-    placed, _ = placed_on_curve(near, curve, near.family.title)
-    return _suggested(
-        Origin.ATLAS, near.family.title, _in_units_of(placed, task), near.family.point
-    )
+def _near(near: NearPath, task: Task) -> SuggestedDesign:
+    placed, _ = placed_on_curve(near, near.family)
+    return _suggested(Origin.ATLAS, near.family, _in_units_of(placed, task), near.designs.point)
 
 
 def _in_units_of(linkage: Linkage, task: Task) -> Linkage:

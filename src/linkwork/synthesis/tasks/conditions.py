@@ -224,14 +224,12 @@ def distances_to_segments(z: ComplexArray, start: ComplexArray, end: ComplexArra
 # Requirements and given numbers of a task that contradict each other.
 
 
-_Key = tuple[str | int, ...]
 _LENGTHS = ("wanted", "lengths")
 _REGION = ("wanted", "fixed_pivots", "inside")
-_EQUAL = 1e-9  # relative: lengths that differ by less are equal
 
 
-def length_contradictions(wanted: Wanted, sides: Mapping[str, float]) -> Problems:
-    """Bounds that exclude each other, or the given sides of a four-bar, with its ground."""
+def length_contradictions(wanted: Wanted, ground: float | None) -> Problems:
+    """Bounds that exclude each other, or the ground, if its length is known."""
     least, most = wanted.shortest, wanted.longest
     if least < 0:
         yield (*_LENGTHS, "least"), f"must not be negative, got {least:g}"
@@ -239,40 +237,29 @@ def length_contradictions(wanted: Wanted, sides: Mapping[str, float]) -> Problem
         yield _LENGTHS, f"least = {least:g} and most = {most:g} contradict each other"
     if wanted.ratio < 1:
         yield (*_LENGTHS, "ratio"), f"must be 1 or more, got {wanted.ratio:g}"
-    ground = sides.get("A0 B0")
     if ground is not None and not least <= ground <= most:
         text = f"exclude the ground of length {ground:g}: change them, or [given] fixed_pivots"
         yield _LENGTHS, text
-    if len(sides) < 2 or min(sides.values()) <= 0:
-        return
-    short, *_, long = sorted(sides, key=lambda name: sides[name])
-    if sides[long] > wanted.ratio * sides[short] * (1.0 + _EQUAL):
-        both = f'"{long}" = {sides[long]:g} and "{short}" = {sides[short]:g}'
-        yield ((*_LENGTHS, "ratio"), f"is exceeded by the given lengths {both}: change one of them")
-    if len(sides) == 4 and 2.0 * sides[long] >= sum(sides.values()):
-        text = f'cannot close a loop: "{long}" is not shorter than the others together; change one'
-        yield ("given", "lengths"), text
 
 
 def place_contradictions(
-    wanted: Wanted, given: Given, positions: Sequence[PrecisionPosition], pivoted: bool
+    wanted: Wanted, given: Given, positions: Sequence[PrecisionPosition]
 ) -> Problems:
-    """Places in obstacles, pivots outside their region, and equal ones.
-
-    ``positions``: those that are to be met; ``pivoted``: whether all designs have fixed pivots.
-    """
+    """Positions that are to be met in obstacles, pivots outside their region, and equal ones."""
     if len(given.fixed_pivots) == 2 and given.fixed_pivots[0] == given.fixed_pivots[1]:
         yield ("given", "fixed_pivots", 1), "is the same place as the first: a link needs two"
-    if wanted.region and _is_flat(wanted.region):
+    region = np.array([complex(*corner) for corner in wanted.region], dtype=complex)
+    if len(region) and _is_flat(wanted.region):
         yield _REGION, "encloses no area"
         return
-    for j, k in _crossings(wanted.region)[:1]:
+    for j, k in _crossings(region)[:1]:
         message = f"crosses itself between corners {j + 1}, {j + 2} and {k + 1}, "
-        yield _REGION, f"{message}{(k + 1) % len(wanted.region) + 1}: list them around the region"
+        yield _REGION, f"{message}{(k + 1) % len(region) + 1}: list them around the region"
         return
-    for k, pivot in enumerate(given.fixed_pivots if wanted.region else ()):
-        if _away(pivot, wanted.region):
-            yield ("given", "fixed_pivots", k), "is outside [wanted] fixed_pivots inside"
+    pivots = np.array([complex(*pivot) for pivot in given.fixed_pivots], dtype=complex)
+    inside = Wishes(region=region).within_region(pivots, np.zeros(len(pivots)))
+    for k in np.flatnonzero(~inside):
+        yield ("given", "fixed_pivots", int(k)), "is outside [wanted] fixed_pivots inside"
     for k, (x, y, radius) in enumerate(wanted.obstacles):
         if radius < 0:
             yield ("wanted", "clear_of", k), f"has the negative radius {radius:g}"
@@ -280,29 +267,6 @@ def place_contradictions(
             if math.dist(position.point, (x, y)) + position.tolerance <= radius:
                 message = f"contains the point of position {j + 1}, so no design can be clear of it"
                 yield ("wanted", "clear_of", k), message
-        for key, corners in _pivots(wanted, given) if pivoted else ():
-            if all(math.dist(corner, (x, y)) <= radius for corner in corners):
-                yield key, f"is in circle {k + 1} of clear_of, so no design can be clear of it"
-
-
-def unreachable_points(
-    wanted: Wanted, given: Given, positions: Sequence[PrecisionPosition], held: bool
-) -> Problems:
-    """Positions too far from each other for the arms of a coupler, or, if they are to be met within
-    tolerances, from pivots for a crank and an arm.
-    """
-    for j, one in enumerate(positions if math.isfinite(wanted.longest) else ()):
-        others = [
-            (("positions", k, "point"), (other.point,), 4 * wanted.longest + other.tolerance)
-            for k, other in enumerate(positions[j + 1 :], start=j + 1)
-        ]
-        pivots = [(*pivot, 2 * wanted.longest) for pivot in _pivots(wanted, given) if held]
-        for key, corners, reach in (*others, *pivots):
-            apart = _away(one.point, corners)
-            if apart - one.tolerance > reach:
-                message = f"is {apart:g} from position {j + 1}, out of reach of links of at most "
-                arms = "two arms reach" if key[0] == "positions" else "crank and arm reach"
-                yield key, f"{message}{wanted.longest:g}: {arms} {reach:g}"
 
 
 def outside_range(
@@ -328,11 +292,9 @@ def repeated_points(
         same = one.point == other.point
         if one.angle is not None and other.angle is not None:
             same &= math.remainder(one.angle - other.angle, turn) == 0
-        if same and curve is not None:
-            first, again = curve.lines[j], curve.lines[k]
-            yield ("curve", "file"), f"repeats line {first} in line {again}: leave one out"
-        elif same:
-            yield ("positions", k), f"is the same as position {j + 1}: leave one out"
+        if same:
+            key, message = _in_file(curve, k, "is the same as", j)
+            yield key, f"{message}: leave one out"
 
 
 def repeated_inputs(
@@ -346,36 +308,22 @@ def repeated_inputs(
         at = math.remainder(position.input, turn)
         j, first = known.setdefault(at, (k, position.input))
         around = (j, k) == (0, len(positions) - 1) and first != position.input
-        if j == k or around:
-            continue
-        if curve is None:
-            yield ("positions", k, "input"), f"is that of position {j + 1}: move one of them"
-        else:
-            message = f"line {curve.lines[k]} has the input of line {curve.lines[j]}"
-            yield ("curve", "file"), f"{message}: move one of them"
+        if j != k and not around:
+            key, message = _in_file(curve, k, "has the input of", j, "input")
+            yield key, f"{message}: move one of them"
 
 
-def _pivots(wanted: Wanted, given: Given) -> Iterator[tuple[_Key, Sequence[Point]]]:
-    """Given fixed pivots, and the corners of the region of others."""
-    for k, pivot in enumerate(given.fixed_pivots):
-        yield ("given", "fixed_pivots", k), (pivot,)
-    if wanted.region:
-        yield _REGION, wanted.region
+def _in_file(
+    curve: Curve | None, k: int, relation: str, j: int, *entry: str
+) -> tuple[tuple[str | int, ...], str]:
+    """The key and the words of a position that has a relation to another one."""
+    if curve is None:
+        return ("positions", k, *entry), f"{relation} position {j + 1}"
+    return ("curve", "file"), f"line {curve.lines[k]} {relation} line {curve.lines[j]}"
 
 
-def _away(place: Point, corners: Sequence[Point]) -> float:
-    """The distance of a place from a polygon; 0 inside."""
-    if len(corners) == 1:
-        return math.dist(place, corners[0])
-    region, z = np.array([complex(*corner) for corner in corners]), np.array([complex(*place)])
-    if Wishes(region=region).within_region(z, np.zeros(1))[0]:
-        return 0.0
-    return float(distances_to_segments(z, region, np.roll(region, -1)).min())
-
-
-def _crossings(corners: Sequence[Point]) -> CountArray:
-    """The sides of a polygon that cross another one: the first corners of both, (C, 2)."""
-    z = np.array([complex(*corner) for corner in corners])
+def _crossings(z: ComplexArray) -> CountArray:
+    """The sides of a polygon (K,) that cross another one: the first corners of both, (C, 2)."""
     side = np.roll(z, -1) - z
     area = (side.conj()[:, None] * (z - z[:, None])).imag
     # a corner on a side to rounding does not cross it

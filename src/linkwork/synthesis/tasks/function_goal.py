@@ -59,10 +59,6 @@ class ExactPairs:
     free: int = 5
     fits: bool = True
 
-    def advice(self, most: int) -> str:
-        """The advice to a task with more pairs than the most."""
-        return f'{most}, or write fit = "least squares"' if self.fits else str(most)
-
 
 #: Those of a four-bar or slider-crank.
 LOOP_PAIRS = ExactPairs()
@@ -132,7 +128,7 @@ class FunctionGoal:
         if len(self.free) == 1:
             message = "has no start, unlike the other one: give both or none"
             yield ("function", self.free[0]), message
-        for key in ("input", "output"):
+        for key in ("x", "input", "output"):
             ends = getattr(self, key)
             if ends is not None and ends[0] == ends[1]:
                 yield ("function", key), f"begins and ends at {ends[0]:g}: give a range"
@@ -148,45 +144,36 @@ class FunctionGoal:
         except ExpressionError as error:
             yield ("function", "of"), str(error)
             return
-        first, last = values[0], values[-1]
+        first = values[0]
         size = max(map(abs, values)) or 1.0
         shares = np.array(values) / size
         steps, spread = np.abs(np.diff(shares)), float(np.ptp(shares))
         if abs(shares[-1] - shares[0]) <= max(_AS_WRITTEN * spread, _ROUNDED):
-            text = f"has the value {first:g} at both ends"
-            if first != last:
-                text = f"has nearly the same value at both ends, {first:g} and {last:g}"
-            yield ("function", "of"), f"{text}, so that the output has no range"
+            text = f"has the value {first:g} at both ends, so that the output has no range"
+            yield ("function", "of"), text
         elif steps.max() > _LARGEST_STEP * spread:
             place = self._x(_DENSE)[steps.argmax()]
             text = f"jumps by {size * steps.max():.4g} near x = {place:.4g}"
             yield ("function", "of"), f"{text}: give a range without this place"
-        if self.x is not None and self.x[0] == self.x[1]:
-            yield ("function", "x"), f"begins and ends at {self.x[0]:g}: give a range"
-        exact, count, most = self.exact, self._count, self._most
-        if count > most and not self.fit:
-            starts = "free" if self.free else "given"
-            text = f"{count} precision points leave no {exact.mechanism} with {starts} start angles"
-            advice = f"keep {exact.advice(most)}{self._free_starts(count)}"
-            yield ("function", "positions"), f"{text}: {advice}"
-        elif count < exact.least:
-            yield ("function", "positions"), f"{count} given: give {exact.least} or more"
+        yield from self._count_problems("positions", self._count, "precision points")
 
-    def _free_starts(self, count: int) -> str:
-        """How so many points could be met."""
-        if not self.exact.fixed < count <= self.exact.free:
-            return ""
-        return f"; free start angles meet {count}: input = 60 is a range that begins anywhere"
+    def _count_problems(self, key: str, count: int, noun: str) -> Problems:
+        """Fewer precision points or pairs than a mechanism meets, or more."""
+        exact, most = self.exact, self._most
+        if count < exact.least:
+            yield ("function", key), f"{count} given: give {exact.least} or more"
+        elif count > most and not self.fit:
+            starts = "given" if self.starts_fixed else "free"
+            text = f"{count} {noun} leave no {exact.mechanism} with {starts} start angles: keep "
+            text += f'{most}, or write fit = "least squares"' if exact.fits else str(most)
+            if self.of and count <= exact.free:
+                text += f"; free start angles meet {count}: input = 60 is a range that begins"
+                text += " anywhere"
+            yield ("function", key), text
 
     def _pair_problems(self) -> Problems:
         count = len(self.pairs)
-        exact = self.exact
-        if count < exact.least:
-            yield ("function", "pairs"), f"{count} given: give {exact.least} or more"
-        fixed, most = self.starts_fixed, self._most
-        if count > most and not self.fit:
-            text = f"{count} pairs leave no {exact.mechanism} in general: keep {exact.advice(most)}"
-            yield ("function", "pairs"), text
+        yield from self._count_problems("pairs", count, "pairs")
         outputs = [output for _, output in self.pairs]
         if count and np.ptp(outputs) <= _ROUNDED * max(map(abs, outputs)):
             text = f"all have the output {outputs[0]:g}, so that the output has no range"
@@ -198,7 +185,7 @@ class FunctionGoal:
                     yield ("function", "pairs", k), text
         for key, place in (("input", 0), ("output", 1)):
             ends = getattr(self, key)
-            if (ends is None) != (not fixed):
+            if (ends is None) == self.starts_fixed:
                 yield ("function", key), "is missing: fix both start angles, or none"
             elif ends is not None and count:
                 span = self.pairs[-1][place] - self.pairs[0][place]

@@ -6,7 +6,6 @@ import math
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
-from itertools import islice
 from pathlib import Path
 
 import numpy as np
@@ -28,7 +27,6 @@ from linkwork.synthesis.tasks.conditions import (
     place_contradictions,
     repeated_inputs,
     repeated_points,
-    unreachable_points,
 )
 from linkwork.synthesis.tasks.curve_file import Curve
 from linkwork.synthesis.tasks.function_goal import ExactPairs, FunctionGoal
@@ -38,47 +36,30 @@ MECHANISMS = ("four-bar", "slider-crank", "inverted-slider-crank")
 WATT_II = "watt-ii"  # two four-bars with a bell crank in common, for functions
 #: Five pairs and fewer are met by four-bars.
 WATT_PAIRS = ExactPairs(mechanism=WATT_II, least=6, fixed=9, free=9, fits=False)
+#: The kinds of mechanisms that are made for each kind of task.
+_MADE = {
+    "motion": (*MECHANISMS, *GUIDED),
+    "path": MECHANISMS[:2],
+    "mixed": MECHANISMS[:2],
+    "function": (*MECHANISMS[:2], WATT_II),
+}
 _WATT_PIVOTS = 3  # A0, B0, C0
 
-_Problems = Iterator[tuple[tuple[str | int, ...], str]]
 
-
-def mechanism_problems(kind: str, mechanisms: Sequence[str]) -> _Problems:
+def mechanism_problems(kind: str, mechanisms: Sequence[str]) -> Problems:
     """Kinds of mechanisms that are not known, or not made for this kind of task."""
-    known = (*MECHANISMS, WATT_II) if kind == "function" else (*MECHANISMS, *GUIDED)
-    for k, name in enumerate(mechanisms):
-        if name == WATT_II and kind in KINDS[:3]:
-            yield ("mechanism", k), 'is made for functions only: task = "function"'
-        elif name not in (*known, *GUIDED) and kind != "improve":
-            made = (*MECHANISMS[:2], WATT_II) if kind == "function" else known
-            message = " or ".join(f'"{one}"' for one in made)
-            yield ("mechanism", k), f"must be {message}, got {as_told(name)}"
-        of_poses = name in (MECHANISMS[2], *GUIDED) and tuple(mechanisms) != MECHANISMS
-        if of_poses and kind not in ("motion", "improve"):
-            yield ("mechanism", k), "is made from poses only: leave it out"
-        if name == WATT_II and len(mechanisms) > 1 and kind == "function":
-            yield (("mechanism", k), "meets more pairs than others: write a separate task for it")
-    if kind == "function" and set(mechanisms) == set(MECHANISMS[:2]):
-        message = "of a function is one kind: four-bars give angles, slider-cranks displacements"
-        yield ("mechanism",), message
-
-
-def watt_pivot_problems(
-    fixed: Sequence[tuple[float, float]],
-    moving: Sequence[tuple[float, float]],
-    goal: FunctionGoal | None,
-) -> _Problems:
-    """Given pivots that a Watt-II six-bar cannot use."""
-    if moving:
-        yield ("given", "moving_pivots"), "has no effect on functions: leave it out"
-    if not fixed:
+    if kind not in _MADE or mechanisms == MECHANISMS:
         return
-    if len(fixed) != _WATT_PIVOTS or fixed[1] in (fixed[0], fixed[2]):
-        message = "must be three pivots, A0, B0 and C0, of which neighbours differ"
-        yield ("given", "fixed_pivots"), message
-    elif goal is not None and goal.starts_fixed:
-        message = "leave the start angles no choice: leave out the pivots, or input and output"
-        yield ("given", "fixed_pivots"), message
+    for k, name in enumerate(mechanisms):
+        if name not in _MADE[kind]:
+            made = " or ".join(f'"{one}"' for one in _MADE[kind])
+            yield ("mechanism", k), f'must be {made} for task = "{kind}", got {as_told(name)}'
+    if kind == "function" and len({*mechanisms}) > 1:
+        yield (
+            ("mechanism",),
+            "of a function is one kind: four-bars give angles, slider-cranks displacements, and "
+            "watt-ii meets more pairs; write a task for each",
+        )
 
 
 # ----------------------------------------------------------------------
@@ -89,9 +70,7 @@ _MOST_FREE = 4  # poses that leave pivots to choose
 _MOST_TIMED = 3  # poses at which the crank's angle may be given
 _MOST_CONDITIONS = 8  # that a four-bar's coupler point meets exactly
 _MOST_EXACT = 5  # poses: more leave no four-bar in general
-_SMALLEST = 1e-12  # of the largest coordinate [length]
 _ROUNDED_TURN = 1e-5  # relative: 6.2832 rad is a turn
-_SIDES = 4  # of the lengths that may be given: a four-bar's
 _FITTED = 3  # of the lengths that may be given: dimensions of mechanisms that are fitted
 
 
@@ -197,10 +176,6 @@ class Task:
             if self.improvement.front and self.rank != Ranking():
                 text = "has no effect on a front, which is delivered as a whole: leave it out"
                 yield ("rank",), text
-        small = [*self._tiny_numbers()]
-        yield from small
-        if small:  # other checks would report false problems
-            return
         yield from self._given_problems()
         yield from self._wish_problems()
         yield from self.rank.problems()
@@ -239,21 +214,6 @@ class Task:
             missing = next(k for k, p in enumerate(self.positions) if p.input is None)
             yield ("positions", missing, "input"), "is missing: time all positions or none"
 
-    def _tiny_numbers(self) -> Problems:
-        """Coordinates and lengths whose powers are below those of floating point."""
-        given, key = self.given, ("positions",) if self.curve is None else ("curve", "file")
-        pivots = [*given.fixed_pivots, *given.moving_pivots]
-        for place_key, places in (
-            (key, [*(position.point for position in self.positions), *pivots]),
-            (("given", "lengths"), [tuple(given.lengths.values())]),
-            (("wanted", "fixed_pivots"), self.wanted.region),
-            (("wanted", "clear_of"), self.wanted.obstacles),
-        ):
-            largest = max((abs(x) for place in places for x in place), default=0.0)
-            if 0.0 < largest < _SMALLEST:
-                message = f"has no number beyond ±{largest:.3g} {self.length}"
-                yield place_key, f"{message}: choose a unit in which it reaches {_SMALLEST:g}"
-
     def _mixed_problems(self) -> Problems:
         """Poses alone, and more conditions than a four-bar meets."""
         poses, count = sum(p.angle is not None for p in self.positions), len(self.positions)
@@ -271,12 +231,6 @@ class Task:
         count, timed = len(self.positions), any(p.input is not None for p in self.positions)
         if self.kind == "motion" and count > _MOST_FREE and (fixed or moving):
             yield ("given",), f"leaves no freedom for {count} poses, which determine all pivots"
-        if self.is_six_bar:
-            yield from watt_pivot_problems(fixed, moving, self.function)
-            yield from self._length_problems()
-            return
-        if len(fixed) + len(moving) > 2:
-            yield ("given",), "fixes more than two pivots: two determine the four-bar"
         if moving and (self.kind != "motion" or timed):
             yield ("given", "moving_pivots"), "belongs to poses without timing: leave it out"
         if self.kind == "motion" and timed and count > _MOST_TIMED:
@@ -290,7 +244,16 @@ class Task:
                     if without_effect and getattr(position, name):
                         yield ("positions", k, name), "has no effect on points: leave it out"
         yield from self._length_problems()
-        if self.kind == "function" and fixed:
+        if self.is_six_bar:
+            if fixed and (len(fixed) != _WATT_PIVOTS or fixed[1] in (fixed[0], fixed[2])):
+                text = "must be three pivots, A0, B0 and C0, of which neighbours differ"
+                yield ("given", "fixed_pivots"), text
+            elif fixed and self.function is not None and self.function.starts_fixed:
+                text = "leave the start angles no choice: leave out the pivots, or input and output"
+                yield ("given", "fixed_pivots"), text
+        elif len(fixed) + len(moving) > 2:
+            yield ("given",), "fixes more than two pivots: two determine the four-bar"
+        elif self.kind == "function" and fixed:
             level = len(fixed) == 2 and fixed[0][1] == fixed[1][1] and fixed[0][0] < fixed[1][0]
             if not level:
                 text = "must be two pivots on a level line, A0 to the left of B0"
@@ -352,26 +315,20 @@ class Task:
             if span > span_wanted * (1.0 + EQUAL_ROWS):
                 message = f"spans {span_wanted:g}, but the given inputs span {span:g}: widen it"
                 yield ("wanted", "input"), message
-        yield from length_contradictions(wanted, self._given_sides())
+        yield from length_contradictions(wanted, self._given_ground())
         held = not self.is_approximate or any(p.tolerance for p in self.positions)
-        pivoted = self.kind != "improve" and {*self.mechanisms} != {"double-slider"}
-        met = self.positions if held else ()
-        yield from place_contradictions(wanted, self.given, met, pivoted)
-        if self.kind != "improve" and not {*GUIDED} & {*self.mechanisms}:
-            # farther places say the same
-            yield from islice(unreachable_points(wanted, self.given, self.positions, held), 1)
+        yield from place_contradictions(wanted, self.given, self.positions if held else ())
 
-    def _given_sides(self) -> dict[str, float]:
-        """The given sides of loops that all kinds of mechanisms of the task have."""
-        pivots, lengths = self.given.fixed_pivots, self.given.lengths
-        sides = {name: lengths[name] for name in LENGTHS[:_SIDES] if name in lengths}
-        many = self.is_approximate or self.kind == "function"
-        if many and "slider-crank" in {*self.mechanisms} - self.left_out.keys():
-            return {name: size for name, size in sides.items() if name in ("A0 A", "A B")}
-        if len(pivots) == 2:
-            return {**sides, "A0 B0": math.dist(*pivots)}
-        unit = self.kind == "function" and self.mechanisms[0] == "four-bar"
-        return {**sides, "A0 B0": 1.0} if unit else sides
+    def _given_ground(self) -> float | None:
+        """The length of the ground, if all kinds of mechanisms of the task have the same."""
+        several = self.is_approximate or self.kind == "function"
+        if several and "slider-crank" in {*self.mechanisms} - self.left_out.keys():
+            return None
+        if len(self.given.fixed_pivots) == 2:
+            return self.given.ground
+        if self.kind == "function" and self.mechanisms[0] == "four-bar":
+            return 1.0
+        return self.given.lengths.get("A0 B0")
 
     @property
     def left_out(self) -> dict[str, str]:

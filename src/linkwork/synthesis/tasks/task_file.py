@@ -149,8 +149,7 @@ def _units(content: Mapping[str, Any], mechanism: str, text: str | None) -> tupl
 
 
 def _task(content: Mapping[str, Any], text: str, stem: str, folder: Path | None = None) -> Task:
-    _check_tables(content)
-    _check_numbers(content)
+    _check(content)
     mechanism = content.get("mechanism", MECHANISMS)
     mechanisms = (mechanism,) if isinstance(mechanism, str) else tuple(mechanism)
     improves = content["task"] == "improve" and len(mechanisms) == 1
@@ -164,8 +163,8 @@ def _task(content: Mapping[str, Any], text: str, stem: str, folder: Path | None 
         length=length,
         angle=angle,
         mechanisms=mechanisms,
-        positions=tuple(map(_position, content.get("positions", ()))),
-        given=_given_table(content.get("given", {})),
+        positions=tuple(PrecisionPosition(**_tuples(row)) for row in content.get("positions", ())),
+        given=Given(**_tuples(content.get("given", {}))),
         function=_function(content["function"], mechanism) if "function" in content else None,
         wanted=_wanted_table(content.get("wanted", {})),
         rank=_ranking(content.get("rank", {})),
@@ -193,8 +192,8 @@ _IDLE = {
 }
 
 
-def _check_tables(content: Mapping[str, Any]) -> None:
-    """Refuse tables, and keys of functions, without effect."""
+def _check(content: Mapping[str, Any]) -> None:
+    """Refuse tables and keys of functions without effect, and numbers beyond floating point."""
     every = set().union(*_USED.values())
     kind = content["task"]
     problems = [
@@ -209,13 +208,7 @@ def _check_tables(content: Mapping[str, Any]) -> None:
         for key in idle
         if name in function and key in function
     ]
-    if problems:
-        raise MechanismError(problems, "the task")
-
-
-def _check_numbers(content: Mapping[str, Any]) -> None:
-    """Refuse numbers whose powers are beyond floating point."""
-    problems = [
+    problems += [
         Problem(key=key, message=f"{as_told(number)} is beyond ±1e12: choose a larger unit")
         for key, number in _numbers(content)
         if abs(number) > LARGEST
@@ -238,41 +231,29 @@ def _numbers(
             yield key, entry
 
 
-def _points(listed: list[list[float]]) -> tuple[Any, ...]:
-    return tuple(map(tuple, listed))
-
-
-def _position(table: dict[str, Any]) -> PrecisionPosition:
-    return PrecisionPosition(**{**table, "point": tuple(table["point"])})
-
-
-def _given_table(table: dict[str, Any]) -> Given:
-    pivots = {key: _points(entry) for key, entry in table.items() if key != "lengths"}
-    return Given(**pivots, lengths=table.get("lengths", {}))
+def _tuples(content: Any) -> Any:
+    """Lists as tuples, in tables and lists too."""
+    match content:
+        case dict():
+            return {key: _tuples(entry) for key, entry in content.items()}
+        case list():
+            return tuple(map(_tuples, content))
+        case _:
+            return content
 
 
 def _function(table: dict[str, Any], mechanism: Any) -> FunctionGoal:
     exact = WATT_PAIRS if WATT_II in mechanism else LOOP_PAIRS
-    listed = {key: tuple(v) for key, v in table.items() if isinstance(v, list)}
     free = [key for key in ("input", "output") if isinstance(table.get(key), int | float)]
-    listed |= {key: (0.0, float(table[key])) for key in free}
-    if "pairs" in table:
-        listed["pairs"] = _points(table["pairs"])
-    return FunctionGoal(**{**table, **listed}, free=tuple(free), exact=exact)
+    begun = {key: (0.0, float(table[key])) for key in free}
+    return FunctionGoal(**{**_tuples(table), **begun}, free=tuple(free), exact=exact)
 
 
 def _improvement(table: dict[str, Any]) -> Improvement:
-    settings = {key: entry for key, entry in table.items() if key != "goal"}
-    settings["fit"] = table.get("goal", Improvement.fit)
-    settings["goals"] = tuple(map(_goal, table.get("goals", [])))
-    settings["bounds"] = {name: tuple(pair) for name, pair in table.get("bounds", {}).items()}
-    settings["vary"] = tuple(table.get("vary", ()))
-    return Improvement(**settings)
-
-
-def _goal(table: dict[str, Any]) -> Goal:
-    entries: dict[str, Any] = {k: tuple(v) if isinstance(v, list) else v for k, v in table.items()}
-    return Goal(**entries)
+    settings = _tuples(table)
+    fit = settings.pop("goal", Improvement.fit)
+    goals = tuple(Goal(**goal) for goal in settings.pop("goals", ()))
+    return Improvement(**settings, fit=fit, goals=goals)
 
 
 def _wanted_table(table: dict[str, Any]) -> Wanted:
@@ -283,11 +264,11 @@ def _wanted_table(table: dict[str, Any]) -> Wanted:
         range=(driven["from"], driven["to"]) if isinstance(driven, dict) else None,
         transmission=table.get(TRANSMISSION_ANGLE.word, {}).get("least", 0.0),
         ordered=table.get("order", "as given") == "as given",
-        region=_points(table.get("fixed_pivots", {}).get("inside", [])),
+        region=_tuples(table.get("fixed_pivots", {}).get("inside", [])),
         shortest=lengths.get("least", 0.0),
         longest=lengths.get("most", math.inf),
         ratio=lengths.get("ratio", math.inf),
-        obstacles=_points(table.get("clear_of", [])),
+        obstacles=_tuples(table.get("clear_of", [])),
     )
 
 

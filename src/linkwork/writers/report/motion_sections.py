@@ -35,8 +35,11 @@ from linkwork.core.results.listing.motion_listing import (
 from linkwork.core.results.motion import Motion
 from linkwork.core.results.quantities.definition import Asked
 from linkwork.core.results.quantity import Kind
-from linkwork.design.listing import contribution_columns, tolerance_fields
-from linkwork.design.tolerance_results import SensitivityStatus
+from linkwork.design.tolerance_results import (
+    SensitivityStatus,
+    contribution_columns,
+    tolerance_fields,
+)
 from linkwork.forces.listing import finite_forces, force_fields, force_status_fields
 from linkwork.writers.charts.chart import Chart
 from linkwork.writers.charts.circuits import circuit_chart
