@@ -12,9 +12,9 @@ from typing import Any
 import click
 
 from linkwork import wings
+from linkwork.core import drawing
 from linkwork.core.api.mechanism import Mechanism
 from linkwork.core.commands.terminal import Decorator
-from linkwork.core.drawing.annotations import Force, check_forces
 from linkwork.core.foundation.errors import ExpressionError, InputError, MechanismError
 from linkwork.core.foundation.files import save_pieces
 from linkwork.core.foundation.statuses import ChangePointPolicy
@@ -160,7 +160,7 @@ def input_values(mechanism: Mechanism, asked: tuple[str, ...]) -> dict[str, floa
     return found
 
 
-def forces_of(mechanism: Mechanism, asked: tuple[str, ...]) -> tuple[Force, ...]:
+def forces_of(mechanism: Mechanism, asked: tuple[str, ...]) -> tuple[drawing.Force, ...]:
     """The forces of ``--force``.
 
     Raises
@@ -171,7 +171,7 @@ def forces_of(mechanism: Mechanism, asked: tuple[str, ...]) -> tuple[Force, ...]
         If the mechanism has no such point.
     """
     forces = tuple(map(_force, asked))
-    check_forces(forces, mechanism.model.compiled.points.names)
+    drawing.check_forces(forces, mechanism.model.compiled.points.names)
     return forces
 
 
@@ -179,14 +179,14 @@ _NUMBER = r"([-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?)"
 _FORCE = re.compile(rf"\s*(.+?)\s*=\s*{_NUMBER}\s*,\s*{_NUMBER}\s*([^\W\d].*?)?\s*")
 
 
-def _force(text: str) -> Force:
+def _force(text: str) -> drawing.Force:
     match = _FORCE.fullmatch(text)
     if match is None:
         raise InputError(
             f'--force {text}: a force is a point and two components, --force "C=0,-981 N"'
         )
     name, x, y, unit = match.groups()
-    return Force(at=name, x=float(x), y=float(y), unit=unit or "")
+    return drawing.Force(at=name, x=float(x), y=float(y), unit=unit or "")
 
 
 # ----------------------------------------------------------------------
@@ -309,9 +309,10 @@ def text_of_source(file: str) -> tuple[str, str]:
     return source_text(file)
 
 
-def names_to_copy() -> tuple[str, ...]:
+def names_to_copy() -> Iterator[str]:
     """The mechanisms of the library, and the tasks to begin with."""
-    return (*examples(), *wings.use("synthesis.tasks.templates").template_names())
+    yield from examples()
+    yield from wings.use("synthesis.tasks.templates").template_names()
 
 
 def text_to_copy(name: str) -> str:
@@ -322,8 +323,9 @@ def text_to_copy(name: str) -> str:
     UnknownNameError
         If there is none of this name.
     """
-    tasks = wings.use("synthesis.tasks.templates")
-    return tasks.template_text(name) if name in tasks.template_names() else example_text(name)
+    if name in examples() or name not in names_to_copy():
+        return example_text(name)
+    return wings.use("synthesis.tasks.templates").template_text(name)
 
 
 def mechanism_of(text: str, name: str, changes: tuple[str, ...] = ()) -> Mechanism:
