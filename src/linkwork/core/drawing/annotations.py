@@ -10,7 +10,7 @@ import numpy as np
 
 from linkwork.core.drawing.labels import Choice, places_beside
 from linkwork.core.drawing.pose import Pose, printed_name
-from linkwork.core.drawing.scene import Box, Disc, Measures, Polyline, Primitive, Role, xy
+from linkwork.core.drawing.scene import Box, Measures, Primitive, Role, drawn_disc, drawn_line
 from linkwork.core.foundation.errors import InputError, UnknownNameError, choices, internal
 from linkwork.core.foundation.values import check_values
 from linkwork.core.results.motion import Motion
@@ -84,11 +84,10 @@ def position_marks(marks: Sequence[PositionMark], measures: Measures) -> Annotat
     ring = (_RING if few else _SMALL_RING) * measures.pin
     for number, mark in enumerate(marks, start=1):
         of = str(number)
-        drawn.append(Disc(role=Role.POSITION, of=of, centre=xy(mark.place), radius=ring))
+        drawn.append(drawn_disc(Role.POSITION, of, mark.place, ring))
         if mark.direction is not None:
-            ends = (ring, _ARM * measures.pin)
-            points = tuple(xy(mark.place + length * mark.direction) for length in ends)
-            drawn.append(Polyline(role=Role.POSITION, of=of, points=points))
+            ends = (mark.place + far * mark.direction for far in (ring, _ARM * measures.pin))
+            drawn.append(drawn_line(Role.POSITION, of, ends))
     numbered = marks if few else marks[:1]
     names = [
         places_beside(Role.POSITION_NAME, str(k), str(k), mark.place, 0.8 * measures.text, measures)
@@ -213,7 +212,7 @@ def point_arrows(
             continue
         # the head of a short arrow would hide its line
         head = min(measures.head, 0.5 * abs(tip - tail))
-        drawn.append(Polyline(role=look.role, of=name, points=(xy(tail), xy(tip)), head=head))
+        drawn.append(drawn_line(look.role, name, (tail, tip), head=head))
         text = f"{look.letter}({printed_name(name)})"
         names.append(places_beside(look.name_role, name, text, tip, 0.8 * measures.text, measures))
     return Annotation(drawn=drawn, names=names), short

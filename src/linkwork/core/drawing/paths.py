@@ -18,7 +18,6 @@ from linkwork.core.drawing.pose import Path, Pose, lead_text, printed_name
 from linkwork.core.drawing.scene import (
     COINCIDENT,
     Box,
-    Disc,
     Hatch,
     Measures,
     Polygon,
@@ -26,6 +25,9 @@ from linkwork.core.drawing.scene import (
     Primitive,
     Role,
     Text,
+    drawn_area,
+    drawn_disc,
+    drawn_line,
     xy,
 )
 from linkwork.core.drawing.wheels import wheel_symbols
@@ -165,9 +167,9 @@ def trace_symbols(pose: Pose, names: tuple[str, ...], measures: Measures) -> Ite
         path = smoothed(pose.paths[name], UNSEEN * measures.size, *pose.rates[name])
         for run in drawn_once(thinned(path, width), width):
             if len(run) > 1:
-                yield Polyline(role=Role.TRACE, of=name, points=tuple(map(xy, run)))
+                yield drawn_line(Role.TRACE, name, run)
             else:
-                yield Disc(role=Role.TRACE, of=name, centre=xy(run[0]), radius=0.4 * measures.dot)
+                yield drawn_disc(Role.TRACE, name, run[0], 0.4 * measures.dot)
 
 
 def thinned(path: Path, width: float) -> Path:
@@ -461,11 +463,10 @@ def limit_marks(
         place = further.pose.points[of]
         if further.limit is LimitKind.DEAD_POINT:
             across = 3.0 * measures.pin * _direction(further, of) * 1j
-            ends = (xy(place - across), xy(place + across))
-            marks.append(Polyline(role=Role.LIMIT, of=of, points=ends))
+            marks.append(drawn_line(Role.LIMIT, of, (place - across, place + across)))
         else:
-            corners = tuple(xy(place + 1.7 * measures.pin * 1j**k) for k in range(4))
-            marks.append(Polygon(role=Role.LIMIT, of=of, points=corners))
+            corners = (place + 1.7 * measures.pin * 1j**k for k in range(4))
+            marks.append(drawn_area(Role.LIMIT, of, corners))
         text = f"{further.limit.word} {lead_text(motion, further.row)}"
         height = 0.8 * measures.text
         names.append(places_beside(Role.LIMIT_NAME, of, text, place, height, measures))
@@ -588,7 +589,7 @@ def _curve(
     kept = np.where(inside, curve, complex(np.nan, np.nan))
     width = measures.stroke / 2
     return [
-        Polyline(role=role, of=link, points=tuple(map(xy, run)))
+        drawn_line(role, link, run)
         for run in drawn_once(thinned(kept, width), width)
         if len(run) > 1
     ]

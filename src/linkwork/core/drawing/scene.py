@@ -458,6 +458,23 @@ def xy(z: complex) -> XY:
     return float(z.real), float(z.imag)
 
 
+def drawn_line(
+    role: Role, of: str, points: Iterable[complex], tone: int = 0, head: float = 0.0
+) -> Polyline:
+    """A line through points x + iy."""
+    return Polyline(role=role, of=of, tone=tone, points=tuple(map(xy, points)), head=head)
+
+
+def drawn_area(role: Role, of: str, corners: Iterable[complex], tone: int = 0) -> Polygon:
+    """An area with corners x + iy."""
+    return Polygon(role=role, of=of, tone=tone, points=tuple(map(xy, corners)))
+
+
+def drawn_disc(role: Role, of: str, centre: complex, radius: float, tone: int = 0) -> Disc:
+    """A disc about x + iy."""
+    return Disc(role=role, of=of, tone=tone, centre=xy(centre), radius=radius)
+
+
 def text_width(text: str, height: float) -> float:
     """The printed width of a text, estimated from a table of letter widths [em]."""
     return height * sum(_letter_width(letter) for letter in text)

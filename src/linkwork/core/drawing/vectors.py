@@ -11,7 +11,7 @@ from dataclasses import dataclass
 
 from linkwork.core.drawing.labels import Choice, places_along, places_within
 from linkwork.core.drawing.pose import Pose, printed_formula
-from linkwork.core.drawing.scene import COINCIDENT, Measures, Polyline, Primitive, Role, xy
+from linkwork.core.drawing.scene import COINCIDENT, Measures, Primitive, Role, drawn_line
 from linkwork.core.results.vector_loop import LoopVector, VectorLoop
 
 _NAMED = 0.1  # additional value for an end at a point in the loop's name
@@ -161,15 +161,7 @@ def vector_symbols(
         twins = [other for other in arrows[:k] if _same_line(arrow, other, measures)]
         tail, tip = _moved(arrow, len(twins), measures)
         head = min(measures.head, _LONGEST_HEAD * abs(tip - tail))
-        drawn.append(
-            Polyline(
-                role=Role.VECTOR,
-                of=arrow.vector.name,
-                tone=arrow.loop,
-                points=(xy(tail), xy(tip)),
-                head=head,
-            )
-        )
+        drawn.append(drawn_line(Role.VECTOR, arrow.vector.name, (tail, tip), arrow.loop, head))
         if not any(other.vector.name == arrow.vector.name for other in twins):
             text = printed_formula(arrow.vector.name)
             line = (tail, tip)
