@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 import types
 import typing
-from collections.abc import Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, fields
 from decimal import Decimal
 from functools import cache
@@ -284,9 +284,10 @@ class ListOf:
 
 @dataclass(frozen=True)
 class Table:
-    """A table whose keys are known."""
+    """A table whose keys are known; ``made`` makes an object of its values."""
 
     keys: tuple[Key, ...]
+    made: Callable[..., Any] = dict
 
 
 @dataclass(frozen=True)
@@ -295,6 +296,7 @@ class Tables:
 
     keys: tuple[Key, ...]
     single: bool = False
+    made: Callable[..., Any] = dict
 
 
 @dataclass(frozen=True)
@@ -302,6 +304,7 @@ class TablesOrFormula:
     """A list of tables, or a formula in quotes."""
 
     keys: tuple[Key, ...]
+    made: Callable[..., Any] = dict
 
 
 @dataclass(frozen=True)

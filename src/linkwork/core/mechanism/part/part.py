@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import itertools
 import math
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from enum import Enum
-from typing import Any, ClassVar, Self
+from typing import ClassVar, Self
 
 import numpy as np
 
@@ -199,12 +199,6 @@ class Part:
             # the class is frozen: fields can only be set this way
             object.__setattr__(self, field, _frozen(entry))
         check_values(self)
-
-    @classmethod
-    def of_table(cls, table: Mapping[str, Any]) -> Self:
-        """The part described by a table of a file."""
-        attributes = {key.name: key.attribute for key in cls.keys}
-        return cls(**{attributes[name]: entry for name, entry in table.items()})
 
     @property
     def label(self) -> str:
