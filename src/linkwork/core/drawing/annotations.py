@@ -10,7 +10,15 @@ import numpy as np
 
 from linkwork.core.drawing.labels import Choice, places_beside
 from linkwork.core.drawing.pose import Pose, printed_name
-from linkwork.core.drawing.scene import Box, Measures, Primitive, Role, drawn_disc, drawn_line
+from linkwork.core.drawing.scene import (
+    Box,
+    Measures,
+    Primitive,
+    Role,
+    drawn_disc,
+    drawn_line,
+    round_up,
+)
 from linkwork.core.foundation.errors import InputError, UnknownNameError, choices, internal
 from linkwork.core.foundation.values import check_values
 from linkwork.core.results.motion import Motion
@@ -18,7 +26,7 @@ from linkwork.core.results.position import Position
 from linkwork.core.results.quantity import Kind, Rate
 from linkwork.core.results.vector_loop import VectorLoop
 
-_SHORT = (1.0, 1.5, 2.0, 2.5, 3.0, 4.0, 5.0, 6.0, 8.0, 10.0)
+SCALES = (1.0, 1.5, 2.0, 2.5, 3.0, 4.0, 5.0, 6.0, 8.0)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -47,12 +55,6 @@ class Annotation:
             names=[name for part in every for name in part.names],
             caption="; ".join(part.caption for part in every if part.caption),
         )
-
-
-def round_up(wanted: float) -> float:
-    """A positive number rounded up to 1, 1.5, 2, 2.5, 3, 4, 5, 6 or 8 times a power of ten."""
-    power: float = 10.0 ** int(f"{wanted:e}".partition("e")[2])
-    return min(step * power for step in _SHORT if step * power >= wanted * (1.0 - 1e-12))
 
 
 # ----------------------------------------------------------------------
@@ -277,7 +279,7 @@ def rate_arrows(
         most = max(usual_most(np.concatenate(rows)), most)
     if not most:
         return Annotation(caption=f"{_WORD[order]}: none, no point moves")
-    scale = 1.0 / round_up(most / (LONGEST * measures.size))
+    scale = 1.0 / round_up(most / (LONGEST * measures.size), SCALES)
     arrows, short = point_arrows(rates, pose.points, scale, _RATE_ARROWS_LOOK[order], measures)
     rate = rate_of(order, by_time)
     unit = rate.unit(Kind.LENGTH, position.units, position.derivative_unit).replace("^2", "²")
@@ -355,7 +357,7 @@ def force_arrows(
     most = max(abs(complex(force.x, force.y)) for force in forces)
     if not most:
         return Annotation(caption="force: all are zero")
-    scale = 1.0 / round_up(most / (LONGEST * measures.size))
+    scale = 1.0 / round_up(most / (LONGEST * measures.size), SCALES)
     parts = []
     for force in forces:
         vector = {force.at: complex(force.x, force.y)}

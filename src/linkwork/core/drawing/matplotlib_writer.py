@@ -26,6 +26,7 @@ from linkwork.core.drawing.scene import (
     Scene,
     Text,
     Theme,
+    round_down,
 )
 
 if TYPE_CHECKING:
@@ -38,12 +39,7 @@ FORMATS = ("png", "svg", "pdf")
 
 _LONG_SIDE = 6.0  # longer side of the drawing [inches]
 _SHORT_SIDE = 2.2  # minimum, so that a flat mechanism has room, ticks and a title
-_LEFT, _RIGHT, _BELOW, _LINE = (
-    0.75,
-    0.2,
-    0.6,
-    0.19,
-)  # margins and title line [inches]
+_LEFT, _RIGHT, _BELOW, _LINE = 0.75, 0.2, 0.6, 0.19  # margins and title line [inches]
 _TITLE, _SMALL = 11.0, 9.0  # font sizes in points
 _TICK_EVERY = 1.0  # approximate distance [inches]
 _MARGIN, _BETWEEN = 0.15, 0.15  # margins of pictures side by side [inches]
@@ -193,7 +189,7 @@ def _dress(ax: Axes, scene: Scene, theme: Theme, view: Box) -> None:
     ax.apply_aspect()
     scale = _points_per_unit(ax)
     short = min(view.width, view.height) * scale / 72
-    spacing = _round_step(min(_TICK_EVERY, max(0.5 * short, 0.5)) * 72 / scale)
+    spacing = round_down(1.4 * min(_TICK_EVERY, max(0.5 * short, 0.5)) * 72 / scale, (1, 2, 5))
     for axis, name in ((ax.xaxis, "x"), (ax.yaxis, "y")):
         axis.set_major_formatter(lambda value, _: f"{value:.6g}".replace("-", "\u2212"))
         axis.set_major_locator(MultipleLocator(spacing))
@@ -216,12 +212,6 @@ def _points_per_unit(ax: Axes) -> float:
     root = ax.get_figure(root=True)
     assert root is not None
     return float(right - left) * 72 / root.dpi
-
-
-def _round_step(wanted: float) -> float:
-    """The largest of 1, 2, 5 times a power of ten up to 1.4 times ``wanted``."""
-    power: float = 10.0 ** math.floor(math.log10(1.4 * wanted))
-    return max(step * power for step in (1, 2, 5) if step * power <= 1.4 * wanted)
 
 
 class Brush:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from enum import Enum
 from functools import cached_property
@@ -456,6 +456,18 @@ class Scene:
 def xy(z: complex) -> XY:
     """x + iy as a pair."""
     return float(z.real), float(z.imag)
+
+
+def round_up(number: float, steps: Sequence[float]) -> float:
+    """The smallest of ``steps``, from 1 up, times a power of ten that is not smaller."""
+    power: float = 10.0 ** int(f"{number:e}".partition("e")[2])
+    return min(k * power for k in (*steps, 10.0) if k * power >= number * (1.0 - 1e-9))
+
+
+def round_down(number: float, steps: Sequence[float]) -> float:
+    """The largest of ``steps``, from 1 up, times a power of ten that is not larger."""
+    power: float = 10.0 ** int(f"{number:e}".partition("e")[2])
+    return max(k * power for k in steps if k * power <= number * (1.0 + 1e-9))
 
 
 def drawn_line(

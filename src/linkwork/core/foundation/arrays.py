@@ -9,9 +9,6 @@ from typing import TYPE_CHECKING, Any, TypeVar, overload
 
 import numpy as np
 
-if TYPE_CHECKING:
-    import numpy.typing as npt
-
 # ----------------------------------------------------------------------
 # Type names for NumPy arrays by their contents.
 #
@@ -19,8 +16,6 @@ if TYPE_CHECKING:
 
 
 if TYPE_CHECKING:
-    from typing import Any
-
     import numpy.typing as npt
 
     AnyArray = npt.NDArray[Any]

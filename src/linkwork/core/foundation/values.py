@@ -334,23 +334,9 @@ class Either:
 
 
 Kind = (
-    Constant
-    | Text
-    | NumberValue
-    | PlainNumber
-    | Whole
-    | Formula
-    | Speed
-    | Measured
-    | Flag
-    | ListOf
-    | Table
-    | Tables
-    | TablesOrFormula
-    | Named
-    | Several
-    | Either
-)
+    Constant | Text | NumberValue | PlainNumber | Whole | Formula | Speed | Measured | Flag
+    | ListOf | Table | Tables | TablesOrFormula | Named | Several | Either
+)  # fmt: skip
 
 
 @dataclass(frozen=True)
