@@ -7,7 +7,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from typing import Self
 
-from linkwork.contacts.curves import COORDINATES, coordinates, turned_back
+from linkwork.contacts.curves import COORDINATES, contours, coordinates, turned_back
 from linkwork.core.foundation.errors import choices
 from linkwork.core.foundation.names import GROUND
 from linkwork.core.foundation.values import (
@@ -305,11 +305,7 @@ class Cam(NamedPart):
                 radius=linkage.numbers(self.radius),
                 kind="roller",
             )
-        if self.name in outlines:
-            link, center, points = outlines[self.name]
-            yield CamOutline(
-                name=self.name, link=link, center=center, points=tuple(map(complex, points))
-            )
+        yield from contours(CamOutline, [self.name], outlines)
         yield follower
 
     def sketched_outlines(self, linkage: Bodies) -> Iterator[tuple[str, Outline]]:

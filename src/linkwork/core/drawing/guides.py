@@ -41,8 +41,8 @@ class Track:
     name: str
     on: str
     tone: int
-    block: bool
-    fixed: bool
+    block: bool = True
+    fixed: bool = False
     along: complex
     away: complex
     start: complex
@@ -76,8 +76,6 @@ def _on_link(pose: Pose, rail: Rail, line: tuple[str, str], tone_of: Mapping[str
         name=rail.name,
         on=rail.on,
         tone=tone_of.get(rail.on, 1),
-        block=True,
-        fixed=False,
         along=along,
         away=along * -1j,
         start=foot + travel.low * along,
@@ -100,7 +98,6 @@ def _rail_track(pose: Pose, measures: Measures, rail: Rail, tone_of: Mapping[str
         name=rail.name,
         on=GROUND,
         tone=1,
-        block=True,
         fixed=True,
         along=rail.along,
         away=_rail_side(pose, rail.points, rail.along, measures),
