@@ -24,16 +24,15 @@ from linkwork.core.drawing.links import convex_outline, in_line
 from linkwork.core.drawing.paths import centre_symbols, centrode_symbols, colour_scale, speed_traces
 from linkwork.core.drawing.pose import Pose, printed_name, printed_value
 from linkwork.core.drawing.scene import (
-    Arc,
     Box,
     Measures,
     Polyline,
     Primitive,
     Role,
-    Text,
+    drawn_arc,
     drawn_line,
+    drawn_text,
     text_width,
-    xy,
 )
 from linkwork.core.drawing.vectors import Edge, vector_symbols
 from linkwork.core.foundation.lanes import phase
@@ -164,17 +163,9 @@ def _angle(
     drawn: list[Primitive] = [drawn_line(Role.EXTENSION, part.name, start)]
     # an arc shorter than its arrow head is left out
     if abs(sweep) > least:
-        drawn.append(
-            Arc(
-                role=Role.DIMENSION,
-                of=part.name,
-                centre=xy(centre),
-                radius=radius,
-                start=here - sweep,
-                sweep=sweep,
-                head=_HEAD * measures.head,
-            )
-        )
+        head = _HEAD * measures.head
+        arc = drawn_arc(Role.DIMENSION, part.name, centre, radius, here - sweep, sweep, head)
+        drawn.append(arc)
     wide = math.copysign(max(abs(sweep), _NARROW), sweep)
     spots = [
         (
@@ -239,14 +230,8 @@ def _line(
         line = (start, end)
         text = places_along(Role.DIMENSION_NAME, span.of, span.text, line, 0, measures)
         return drawn, [text], boxes
-    written = Text(
-        role=Role.DIMENSION_NAME,
-        of=span.of,
-        text=span.text,
-        anchor=xy(middle),
-        offset=(0.0, -0.3 * height),
-        height=height,
-    )
+    below = (0.0, -0.3 * height)
+    written = drawn_text(Role.DIMENSION_NAME, span.of, span.text, middle, below, height)
     return [*drawn, written], [], [*boxes, written.box.grown(0.1 * height)]
 
 

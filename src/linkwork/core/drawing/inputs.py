@@ -25,8 +25,8 @@ from linkwork.core.drawing.scene import (
     Polyline,
     Primitive,
     Role,
+    drawn_arc,
     drawn_line,
-    xy,
 )
 from linkwork.core.drawing.wheels import outer_radius
 from linkwork.core.foundation.lanes import phase
@@ -163,15 +163,8 @@ def _around_pivot(
     for away, wider in product(turns, _AROUND_PLATE if plate else _WIDER):
         own = wider * radius
         sweep = turn * min(_SWEEP, _LONGEST * measures.pin / own)
-        arrow = Arc(
-            role=Role.INPUT,
-            of=part.name,
-            centre=xy(pivot),
-            radius=own,
-            start=usual + away - sweep / 2,
-            sweep=sweep,
-            head=measures.head,
-        )
+        start = usual + away - sweep / 2
+        arrow = drawn_arc(Role.INPUT, part.name, pivot, own, start, sweep, measures.head)
         cost = _TURNED * abs(math.remainder(away, math.tau)) + _WIDENED * (wider - 1.0)
         yield _Place(arrow, cost)
 

@@ -5,14 +5,13 @@ from __future__ import annotations
 import cmath
 import math
 from collections.abc import Iterable, Iterator
-from dataclasses import replace
 from functools import singledispatch
 
 import numpy as np
 
 from linkwork.core.drawing.links import hatching, pin_radius, tones
 from linkwork.core.drawing.pose import Pose, Travel, travel_along
-from linkwork.core.drawing.scene import Arc, Measures, Primitive, Role, drawn_area, drawn_line, xy
+from linkwork.core.drawing.scene import Measures, Primitive, Role, drawn_arc, drawn_area, drawn_line
 from linkwork.core.drawing.wheels import addendum_of
 from linkwork.core.foundation.arrays import ComplexArray
 from linkwork.core.foundation.lanes import phase
@@ -65,10 +64,8 @@ def belt_symbols(belt: BeltRun, pose: Pose, measures: Measures) -> Iterator[Prim
         yield drawn_line(Role.BELT, belt.name, (one + first * way, other + second * way))
     around = math.tau - 2 * beta
     start, sweep = (along - around / 2, around) if belt.crossed else (along - beta, 2 * beta)
-    arc = Arc(role=Role.BELT, of=belt.name, centre=xy(one), radius=first, start=along + beta,
-              sweep=around)  # fmt: skip
-    yield arc
-    yield replace(arc, centre=xy(other), radius=abs(second), start=start, sweep=sweep)
+    yield drawn_arc(Role.BELT, belt.name, one, first, along + beta, around)
+    yield drawn_arc(Role.BELT, belt.name, other, abs(second), start, sweep)
 
 
 # ----------------------------------------------------------------------

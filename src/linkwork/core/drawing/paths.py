@@ -5,6 +5,7 @@ from __future__ import annotations
 import cmath
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
+from functools import partial
 from itertools import pairwise
 
 import numpy as np
@@ -21,13 +22,12 @@ from linkwork.core.drawing.scene import (
     Hatch,
     Measures,
     Polygon,
-    Polyline,
     Primitive,
     Role,
-    Text,
     drawn_area,
     drawn_disc,
     drawn_line,
+    drawn_text,
     xy,
 )
 from linkwork.core.drawing.wheels import wheel_symbols
@@ -281,15 +281,13 @@ def _pieces(name: str, pose: Pose, share: Array, unseen: float) -> list[Primitiv
     key = np.where(there, levels, -1)
     edges = [0, *(np.flatnonzero(np.diff(key)) + 1).tolist(), len(key)]
     runs = [(slice(a, b + 1), key[a]) for a, b in pairwise(edges) if b > a and key[a] >= 0]
-    return [
-        Polyline(
-            role=Role.SPEED_TRACE,
-            of=name,
-            level=(int(level) + 0.5) / _CLASSES,
-            points=tuple(map(xy, smoothed(path[run], unseen, first[run], second[run]))),
+    drawn: list[Primitive] = []
+    for run, level in runs:
+        line = drawn_line(
+            Role.SPEED_TRACE, name, smoothed(path[run], unseen, first[run], second[run])
         )
-        for run, level in runs
-    ]
+        drawn.append(replace(line, level=(int(level) + 0.5) / _CLASSES))
+    return drawn
 
 
 def colour_scale(
@@ -301,20 +299,12 @@ def colour_scale(
     top = below.bottom - 1.2 * measures.text
     bottom = top - height
     step = length / _CLASSES
-    bar: list[Primitive] = [
-        Polygon(
-            role=Role.SCALE,
-            of="speed",
-            level=(k + 0.5) / _CLASSES,
-            points=(
-                (left + k * step, bottom),
-                (left + (k + 1) * step, bottom),
-                (left + (k + 1) * step, top),
-                (left + k * step, top),
-            ),
-        )
-        for k in range(_CLASSES)
-    ]
+    bar: list[Primitive] = []
+    for k in range(_CLASSES):
+        here, there = left + k * step, left + (k + 1) * step
+        corners = ((here, bottom), (there, bottom), (there, top), (here, top))
+        level = (k + 0.5) / _CLASSES
+        bar.append(Polygon(role=Role.SCALE, of="speed", level=level, points=corners))
     rate = rate_of(1, motion.speed is not None)
     unit = rate.unit(Kind.LENGTH, motion.units, motion.derivative_unit)
     mark = "\u2265 " if more else ""
@@ -322,23 +312,10 @@ def colour_scale(
     said += ", ".join(map(printed_name, names))
     size = 0.8 * measures.text
     base = bottom + 0.5 * height - 0.3 * size
-    texts = [
-        _text("0", (left - 0.4 * size, base), 1, size),
-        _text(said, (left + length + 0.4 * size, base), -1, size),
-    ]
-    return Annotation(drawn=[*bar, *texts])
-
-
-def _text(text: str, at: tuple[float, float], align: int, height: float) -> Text:
-    return Text(
-        role=Role.SCALE_NAME,
-        of="speed",
-        text=text,
-        anchor=at,
-        offset=(0.0, 0.0),
-        height=height,
-        align=align,
-    )
+    write = partial(drawn_text, Role.SCALE_NAME, "speed", offset=(0.0, 0.0), height=size)
+    bar.append(write("0", complex(left - 0.4 * size, base), align=1))
+    bar.append(write(said, complex(left + length + 0.4 * size, base), align=-1))
+    return Annotation(drawn=bar)
 
 
 # ----------------------------------------------------------------------
@@ -390,20 +367,11 @@ def further_positions(pose: Pose, motion: Motion, count: int) -> list[Further]:
             break
         shown.append(k)
         away = np.minimum(away, np.abs(places - places[k]).max(axis=1))
+    rows = [int(found[k]) for k in shown]
+    limits = [limit[k] for k in shown]
     return [
-        Further(
-            row=int(found[k]),
-            pose=replace(
-                pose,
-                points=dict(zip(pose.paths, places[k].tolist(), strict=True)),
-                angles={
-                    name: float(series.value[found[k]]) * motion.units.angle.radians
-                    for name, series in motion.links.items()
-                },
-            ),
-            limit=limit[k],
-        )
-        for k in shown
+        Further(row=row, pose=pose.moved_to(motion, row), limit=kind)
+        for row, kind in zip(rows, limits, strict=True)
     ]
 
 
