@@ -6,7 +6,7 @@ from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
 
 from linkwork.core.foundation.containers import FrozenDict
-from linkwork.core.foundation.errors import ExpressionError, InputError, choices
+from linkwork.core.foundation.errors import ExpressionError, InputError, undefined
 from linkwork.core.foundation.names import GROUND, canonical
 from linkwork.core.foundation.units import FORCES, LENGTHS, MASSES
 from linkwork.core.foundation.values import as_told
@@ -91,7 +91,7 @@ def check_masses(loaded: LoadedBodies, problems: Problems) -> None:
         key = ("masses", link)
         if link not in loaded.carried:
             known_links = [name for name in loaded.carried if name != GROUND]
-            problems.add(key, f'link "{link}" is not defined {choices("links", known_links, link)}')
+            problems.add(key, undefined("link", link, known_links))
             continue
         if link == GROUND:
             problems.add(key, "is fixed: its mass has no effect, remove it")

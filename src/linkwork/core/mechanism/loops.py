@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from functools import partial
 
 from linkwork.core.foundation.containers import FrozenDict
-from linkwork.core.foundation.errors import choices
+from linkwork.core.foundation.errors import choices, undefined
 from linkwork.core.foundation.names import canonical
 from linkwork.core.mechanism.description import Description, Key, Problems, check_entries, declared
 from linkwork.core.mechanism.dimensions import Number
@@ -109,12 +109,10 @@ class Loops(_Equations, LoadedBodies):
         for link, points in self.links.items():
             for point in points:
                 if point not in self.points:
-                    known = choices("points", self.points, point)
-                    problems.add(("links", link), f'point "{point}" is not defined {known}')
+                    problems.add(("links", link), undefined("point", point, self.points))
         for k, point in enumerate(self.trace):
             if point not in self.points:
-                known = choices("points", self.points, point)
-                problems.add(("trace", "points", k), f'point "{point}" is not defined {known}')
+                problems.add(("trace", "points", k), undefined("point", point, self.points))
         check_masses(self, problems)
         for k, load in enumerate(self.loads):
             load.check_in(self, partial(_add, problems, ("loads", k)))

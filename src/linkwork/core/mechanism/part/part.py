@@ -11,7 +11,7 @@ from typing import ClassVar, Self
 
 import numpy as np
 
-from linkwork.core.foundation.errors import choices
+from linkwork.core.foundation.errors import choices, undefined
 from linkwork.core.foundation.lanes import vector
 from linkwork.core.foundation.names import free_name
 from linkwork.core.foundation.precise import Precise
@@ -410,15 +410,13 @@ class PartChecks:
     def defined(self, point: str, *field: str | int) -> bool:
         """Whether the point exists; reported if not."""
         if point not in self.linkage.points:
-            known = choices("points", self.linkage.points, point)
-            self.add(f'point "{point}" is not defined {known}', *field)
+            self.add(undefined("point", point, self.linkage.points), *field)
         return point in self.linkage.points
 
     def link(self, link: str, *field: str | int) -> bool:
         """Whether the link exists; reported if not."""
         if link not in self.linkage.links:
-            known = choices("links", self.linkage.links, link)
-            self.add(f'link "{link}" is not defined {known}', *field)
+            self.add(undefined("link", link, self.linkage.links), *field)
         return link in self.linkage.links
 
     def on(self, point: str, link: str, *field: str | int) -> None:
@@ -439,22 +437,13 @@ class PartChecks:
 
     def line(self, on: str, line: Sequence[str]) -> None:
         """Check a link and two of its points."""
-        if not self.link(on, "on"):
-            return
-        if len(line) != 2:
-            self.add(f"needs two points, got {len(line)}", "line")
-            return
-        for point in line:
-            self.on(point, on, "line")
-        if line[0] == line[1]:
-            self.add(f"needs two different points, got {line[0]} twice", "line")
+        if self.link(on, "on") and self.two(line, "point", "line"):
+            for point in line:
+                self.on(point, on, "line")
 
     def ends(self, between: Sequence[str]) -> None:
         """Check the two points of a cylinder or spring."""
-        if len(between) != 2:
-            self.add(f"needs two points, got {len(between)}", "between")
-        elif between[0] == between[1]:
-            self.add(f"needs two different points, got {between[0]} twice", "between")
+        self.two(between, "point", "between")
         for point in between:
             self.defined(point, "between")
 
