@@ -110,7 +110,7 @@ def _check_points(linkage: JoinedBodies, problems: Problems) -> None:
             problems.add(("points", point), f"needs two coordinates, got {len(coordinates)}")
             continue
         for number in coordinates:
-            PartChecks(linkage, problems, ("points", point)).length(number)
+            PartChecks(linkage, problems, ("points", point)).amount(number)
         if point not in carried:
             problems.add(("points", point), "is on no link: add it to a link or remove it")
 
@@ -216,7 +216,7 @@ def _check_dimension_keys(linkage: JoinedBodies, problems: Problems) -> None:
             if table == "angles":
                 linkage.numbers.check_number(problems.add, key, number)
                 continue
-            amount = PartChecks(linkage, problems, key).length(number)
+            amount = PartChecks(linkage, problems, key).amount(number)
             if amount <= 0:
                 problems.add(key, f"must be a positive length, got {amount:g}")
             elif amount < _SMALLEST:

@@ -457,13 +457,6 @@ class PartChecks:
         key = (*self.key, *field)
         return self.linkage.numbers.check_amount(self.problems.add, key, number)
 
-    def length(self, number: Number, *field: str | int) -> float:
-        """A length or coordinate, limited so that its square is finite."""
-        amount = self.number(number, *field)
-        if abs(amount) > LARGEST:
-            self.add(f"{amount:g} is too large: at most {LARGEST:g} {self.linkage.length}", *field)
-        return amount
-
     def positive(self, number: Number, noun: str, *field: str | int) -> float:
         """A positive number, limited so that products with it are finite."""
         amount = self.amount(number, *field)
