@@ -90,19 +90,22 @@ through_option: Decorator = click.option(
     "--through", is_flag=True, help="Continue through dead points around the circuit."
 )
 
-change_points_option: Decorator = click.option(
-    "--change-points",
-    type=click.Choice([policy.value for policy in ChangePointPolicy]),
-    default=ChangePointPolicy.STOP.value,
-    show_default=True,
-    help="At a change point: stop, go straight on, or turn onto the other branch.",
+
+def _change_points(about: str, policies: Iterable[ChangePointPolicy]) -> Decorator:
+    return click.option(
+        "--change-points",
+        type=click.Choice([policy.value for policy in policies]),
+        default=ChangePointPolicy.STOP.value,
+        show_default=True,
+        help=f"At a change point: {about}.",
+    )
+
+
+change_points_option = _change_points(
+    "stop, go straight on, or turn onto the other branch", ChangePointPolicy
 )
-straight_option: Decorator = click.option(
-    "--change-points",
-    type=click.Choice([ChangePointPolicy.STOP.value, ChangePointPolicy.STRAIGHT.value]),
-    default=ChangePointPolicy.STOP.value,
-    show_default=True,
-    help="At a change point: stop, or go straight on.",
+straight_option = _change_points(
+    "stop, or go straight on", (ChangePointPolicy.STOP, ChangePointPolicy.STRAIGHT)
 )
 
 

@@ -104,7 +104,7 @@ T = TypeVar("T")
 def check_values(owner: Any) -> None:
     """Check that every field of a part, input or option has a value of its declared type.
 
-    Numbers that may be formulas are checked where they are evaluated.
+    Lists become tuples. Numbers that may be formulas are checked where they are evaluated.
 
     Raises
     ------
@@ -114,6 +114,9 @@ def check_values(owner: Any) -> None:
     owner_type: type = type(owner)
     for name, kind in _declared(owner_type).items():
         given = getattr(owner, name)
+        if is_listed(given):
+            given = _frozen(given)
+            object.__setattr__(owner, name, given)
         if not _fits(given, kind):
             raise InputError(
                 f"{name} of lw.{owner_type.__name__} must be {_wanted(kind)}, got {as_told(given)}"
@@ -160,6 +163,13 @@ def is_listed(given: object) -> bool:
     if isinstance(given, str | bytes | Mapping) or not isinstance(given, Iterable):
         return False
     return not isinstance(given, np.ndarray) or given.ndim > 0
+
+
+def _frozen(entry: Any) -> object:
+    """Rows of rows as tuples of tuples."""
+    if isinstance(entry, np.ndarray):
+        entry = entry.tolist()
+    return tuple(map(_frozen, entry)) if is_listed(entry) else entry
 
 
 @cache

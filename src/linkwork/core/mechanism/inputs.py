@@ -21,7 +21,6 @@ from linkwork.core.foundation.values import (
     Speed,
     Text,
     check_values,
-    is_listed,
 )
 from linkwork.core.mechanism.dimensions import Number, Numbers
 
@@ -147,9 +146,6 @@ class LawSegment:
     values: tuple[Number, ...] = ()
 
     def __post_init__(self) -> None:
-        for name in ("times", "values"):
-            if is_listed(getattr(self, name)):
-                object.__setattr__(self, name, tuple(getattr(self, name)))
         check_values(self)
 
     def through(self, numbers: Numbers) -> tuple[tuple[float, float], ...]:
@@ -356,9 +352,6 @@ class Motor:
     torques: tuple[Number, ...] = ()
 
     def __post_init__(self) -> None:
-        for name in ("speeds", "torques"):
-            if is_listed(getattr(self, name)):
-                object.__setattr__(self, name, tuple(getattr(self, name)))
         check_values(self)
 
     @property
@@ -502,8 +495,6 @@ class Input:
     inertia: Number | None = None
 
     def __post_init__(self) -> None:
-        if self.law is not None and is_listed(self.law):
-            object.__setattr__(self, "law", tuple(self.law))
         check_values(self)
 
     @property

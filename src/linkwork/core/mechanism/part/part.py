@@ -9,8 +9,6 @@ from dataclasses import dataclass, replace
 from enum import Enum
 from typing import ClassVar, Self
 
-import numpy as np
-
 from linkwork.core.foundation.errors import choices, undefined
 from linkwork.core.foundation.lanes import vector
 from linkwork.core.foundation.names import free_name
@@ -194,10 +192,6 @@ class Part:
     holders: ClassVar[str] = "joints"  # parts that may contradict an angle it fixes
 
     def __post_init__(self) -> None:
-        """Convert lists to tuples, so that parts are comparable and immutable; check all types."""
-        for field, entry in vars(self).items():
-            # the class is frozen: fields can only be set this way
-            object.__setattr__(self, field, _frozen(entry))
         check_values(self)
 
     @property
@@ -329,12 +323,6 @@ class NamedPart(Part):
     @property
     def names(self) -> tuple[str, ...]:
         return (self.name,)
-
-
-def _frozen(entry: object) -> object:
-    if isinstance(entry, np.ndarray):
-        entry = entry.tolist()
-    return tuple(map(_frozen, entry)) if isinstance(entry, list | tuple) else entry
 
 
 def carriers(linkage: Bodies) -> dict[str, list[str]]:
