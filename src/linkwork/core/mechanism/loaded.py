@@ -43,9 +43,7 @@ class LoadedBodies(Description):
         if given is not None and not isinstance(given, Gravity):
             raise InputError(f"gravity must be lw.Gravity(…), got {as_told(given)}")
         check_entries("masses", Mass, self.masses.values())
-        object.__setattr__(self, "masses", FrozenDict.of(self.masses))
         check_entries("stops", Stop, self.stops)
-        object.__setattr__(self, "stops", tuple(self.stops))
 
     @property
     def carried(self) -> Mapping[str, tuple[str, ...]]:

@@ -21,10 +21,6 @@ class _Equations(Description):
 
     guess: Mapping[str, Number] = FrozenDict()
 
-    def __post_init__(self) -> None:
-        super().__post_init__()
-        object.__setattr__(self, "guess", FrozenDict.of(self.guess))
-
     def _check_guess(self, problems: Problems) -> None:
         for name, number in self.guess.items():
             self.numbers.check_number(problems.add, ("guess", name), number)
@@ -76,8 +72,6 @@ class Loops(_Equations, LoadedBodies):
     def __post_init__(self) -> None:
         super().__post_init__()
         set_ = object.__setattr__
-        set_(self, "loops", FrozenDict.of(self.loops))
-        set_(self, "points", FrozenDict.of(self.points))
         spelled = {canonical(name): name for name in self.points}
 
         def same(name: str) -> str:
@@ -164,7 +158,6 @@ class PlainEquations(_Equations):
 
     def __post_init__(self) -> None:
         super().__post_init__()
-        object.__setattr__(self, "equations", FrozenDict.of(self.equations))
         problems = Problems()
         self.check_common(problems, declared("guess", self.guess))
         self._check_guess(problems)
