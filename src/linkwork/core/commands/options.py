@@ -37,19 +37,6 @@ def number_or_formula(text: str) -> float | str:
         return text.strip()
 
 
-class _Number(click.ParamType):  # type: ignore[type-arg]  # generic since click 8.4 only
-    """A number, or a formula of the file's dimensions."""
-
-    name = "number"
-
-    def convert(self, value: Any, param: Any, ctx: Any) -> float | str:
-        """A number, or the text of a formula, which is checked once the mechanism is read."""
-        return number_or_formula(value) if isinstance(value, str) else float(value)
-
-
-NUMBER = _Number()
-
-
 file_argument: Decorator = click.argument("file", metavar="FILE")
 
 
@@ -126,10 +113,16 @@ def columns_option(about: str) -> Decorator:
 
 def range_options(command: Callable[..., Any]) -> Callable[..., Any]:
     """``--from``, ``--to`` and ``--step`` of a sweep."""
-    command = click.option("--step", type=NUMBER, help="Step between input values.")(command)
-    command = click.option("--to", "to", type=NUMBER, help="Last input value.")(command)
-    first = "First input value, in the file's unit."
-    return click.option("--from", "from_", type=NUMBER, help=first)(command)
+    about = {
+        "step": "Step between input values.",
+        "to": "Last input value.",
+        "from_": "First input value, in the file's unit.",
+    }
+    for name, said in about.items():
+        flag = f"--{name.rstrip('_')}"
+        option = click.option(flag, name, metavar="NUMBER", type=number_or_formula, help=said)
+        command = option(command)
+    return command
 
 
 def input_values(mechanism: Mechanism, asked: tuple[str, ...]) -> dict[str, float] | None:

@@ -14,7 +14,7 @@ from linkwork.core.expression.grammar import CONSTANTS
 from linkwork.core.expression.tree import Binary, Call, Name, Negative, Node, NumberNode
 from linkwork.core.foundation import precise
 from linkwork.core.foundation.errors import ExpressionError, choices
-from linkwork.core.foundation.lanes import Lanes, as_float, finite, is_batched, is_fractional
+from linkwork.core.foundation.lanes import as_float, finite, first_lanes, is_batched, is_fractional
 from linkwork.core.foundation.precise import (
     PI,
     Precise,
@@ -63,9 +63,9 @@ def applied(name: str, arguments: Sequence[float]) -> float:
     ValueError, OverflowError
         As in ``math``: outside the domain, or if the value is too large.
     """
-    given: list[object] = list(arguments)
-    first = next(number for number in given if isinstance(number, Lanes))
-    found = first.apply(FUNCTIONS[name], *given)
+    first = first_lanes(arguments)
+    assert first is not None
+    found = first.apply(FUNCTIONS[name], *arguments)
     if name in _PARTIAL and not found.holds(np.isfinite):
         raise OverflowError if name == "exp" else ValueError
     return cast(float, found)

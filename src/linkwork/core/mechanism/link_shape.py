@@ -18,6 +18,7 @@ from linkwork.core.foundation.lanes import (
     degrees,
     detached,
     everywhere,
+    first_lanes,
     is_batched,
     is_steady,
     largest,
@@ -54,7 +55,7 @@ def least_norm(matrix: Sequence[Sequence[float]], right: Sequence[float]) -> Seq
     LinAlgError
         If the numbers are not finite.
     """
-    lanes = _lanes_in(matrix, right)
+    lanes = first_lanes(number for row in (*matrix, right) for number in row)
     if lanes is None:
         known, wanted = np.array(matrix), np.array(right)
         # LAPACK prints a line about such numbers
@@ -90,11 +91,6 @@ def independent(matrix: Sequence[Sequence[float]]) -> list[int]:
             found.append(k)
             base = np.vstack([base, rest / size])
     return found
-
-
-def _lanes_in(matrix: Sequence[Sequence[float]], right: Sequence[float]) -> Lanes | None:
-    numbers: list[object] = [number for row in (*matrix, right) for number in row]
-    return next((number for number in numbers if isinstance(number, Lanes)), None)
 
 
 def _stacked(matrix: Sequence[Sequence[float]], lanes: Lanes) -> Array:
