@@ -178,20 +178,15 @@ LONGEST = 0.3
 _SHORTEST = 1.5  # in pin radii: shorter arrows would be hidden by the pin
 
 
-@dataclass(frozen=True, kw_only=True)
-class ArrowLook:
-    """Roles of a kind of arrow and of its names, and its letter, such as v for velocities."""
-
-    role: Role
-    name_role: Role
-    letter: str
+#: Letters of the names of arrows.
+_LETTERS = {Role.VELOCITY: "v", Role.ACCELERATION: "a", Role.FORCE: "F"}
 
 
 def point_arrows(
     vectors: Mapping[str, complex],
     points: Mapping[str, complex],
     scale: float,
-    look: ArrowLook,
+    role: Role,
     measures: Measures,
 ) -> tuple[Annotation, list[str]]:
     """Arrows from points, and the points whose arrows are too short to draw.
@@ -214,9 +209,9 @@ def point_arrows(
             continue
         # the head of a short arrow would hide its line
         head = min(measures.head, 0.5 * abs(tip - tail))
-        drawn.append(drawn_line(look.role, name, (tail, tip), head=head))
-        text = f"{look.letter}({printed_name(name)})"
-        names.append(places_beside(look.name_role, name, text, tip, 0.8 * measures.text, measures))
+        drawn.append(drawn_line(role, name, (tail, tip), head=head))
+        text, name_role = f"{_LETTERS[role]}({printed_name(name)})", Role[f"{role.name}_NAME"]
+        names.append(places_beside(name_role, name, text, tip, 0.8 * measures.text, measures))
     return Annotation(drawn=drawn, names=names), short
 
 
@@ -248,10 +243,7 @@ def scale_caption(word: str, scale: float, length_unit: str, unit: str, size: fl
 
 
 _WORD = {1: "velocity", 2: "acceleration"}
-_RATE_ARROWS_LOOK = {
-    1: ArrowLook(role=Role.VELOCITY, name_role=Role.VELOCITY_NAME, letter="v"),
-    2: ArrowLook(role=Role.ACCELERATION, name_role=Role.ACCELERATION_NAME, letter="a"),
-}
+_RATE_ROLES = {1: Role.VELOCITY, 2: Role.ACCELERATION}
 _FAST = 0.95  # share of the rows that are not counted as fastest
 _BEYOND = 3.0  # speed ratio to the others for rows near a dead point
 
@@ -280,7 +272,7 @@ def rate_arrows(
     if not most:
         return Annotation(caption=f"{_WORD[order]}: none, no point moves")
     scale = 1.0 / round_up(most / (LONGEST * measures.size), SCALES)
-    arrows, short = point_arrows(rates, pose.points, scale, _RATE_ARROWS_LOOK[order], measures)
+    arrows, short = point_arrows(rates, pose.points, scale, _RATE_ROLES[order], measures)
     rate = rate_of(order, by_time)
     unit = rate.unit(Kind.LENGTH, position.units, position.derivative_unit).replace("^2", "²")
     caption = scale_caption(_WORD[order], scale, position.units.length, unit, measures.size)
@@ -338,9 +330,6 @@ def _rates(position: Position, pose: Pose, order: int) -> dict[str, complex]:
 # point are drawn separately.
 
 
-_FORCE_ARROWS_LOOK = ArrowLook(role=Role.FORCE, name_role=Role.FORCE_NAME, letter="F")
-
-
 def force_arrows(
     forces: Sequence[Force], pose: Pose, length_unit: str, measures: Measures
 ) -> Annotation:
@@ -361,7 +350,7 @@ def force_arrows(
     parts = []
     for force in forces:
         vector = {force.at: complex(force.x, force.y)}
-        parts.append(point_arrows(vector, pose.points, scale, _FORCE_ARROWS_LOOK, measures)[0])
+        parts.append(point_arrows(vector, pose.points, scale, Role.FORCE, measures)[0])
     caption = scale_caption("force", scale, length_unit, force_unit(forces), measures.size)
     drawn = {primitive.of for part in parts for primitive in part.drawn}
     hidden_at = [force.at for force in forces if force.at not in drawn]
