@@ -43,6 +43,7 @@ from linkwork.core.foundation.names import GROUND, as_names
 from linkwork.core.foundation.values import given_or
 from linkwork.core.mechanism.bodies import Contour, DiscFigure
 from linkwork.core.mechanism.part.guides import GenevaWheel
+from linkwork.core.mechanism.part.rolling import RollingLine
 from linkwork.core.results.motion import Motion
 from linkwork.core.results.position import Position
 
@@ -59,7 +60,7 @@ def drawn_box(pose: Pose, traces: tuple[str, ...], others: Sequence[Pose]) -> Bo
     places = (one.points[name] for one in poses for name in drawn)
     along = {guide.point for guide in pose.skeleton.guides if pose.on_ground(guide)}
     along |= {point for rail in pose.skeleton.rails for point in rail.points}
-    along |= {point for figure in pose.skeleton.figures for point in figure.travelling}
+    along |= {track.center for track in pose.skeleton.of(RollingLine)}
     paths = [pose.paths[name] for name in (*traces, *along) if name in pose.paths]
     travelled = chain.from_iterable(path[np.isfinite(path)] for path in paths)
     rounds = chain.from_iterable(map(_round_parts, poses))
@@ -76,8 +77,8 @@ def drawn_box(pose: Pose, traces: tuple[str, ...], others: Sequence[Pose]) -> Bo
 def _round_parts(pose: Pose) -> Iterator[complex]:
     """Outermost points of wheels, cams and curves, and of rolling lines without a motion."""
     if not pose.paths:
-        for figure in pose.skeleton.figures:
-            yield from (pose.points[name] for name in figure.extent)
+        for track in pose.skeleton.of(RollingLine):
+            yield from (pose.points[name] for name in track.line)
     for center, radius in _discs(pose):
         yield from (pose.points[center] + radius * 1j**k for k in range(4))
     for contour in pose.skeleton.of(Contour):
