@@ -114,7 +114,8 @@ def check_values(owner: Any) -> None:
     owner_type: type = type(owner)
     for name, kind in _declared(owner_type).items():
         given = getattr(owner, name)
-        if is_listed(given):
+        kinds = (kind, *typing.get_args(kind)) if is_listed(given) else ()
+        if any(typing.get_origin(part) is tuple for part in kinds):
             given = _frozen(given)
             object.__setattr__(owner, name, given)
         if not _fits(given, kind):
