@@ -24,7 +24,8 @@ from linkwork.core.drawing import (
     Text,
     scene_of,
 )
-from linkwork.core.drawing.annotations import LONGEST, Force, round_up, usual_most
+from linkwork.core.drawing.annotations import LONGEST, SCALES, Force, usual_most
+from linkwork.core.drawing.scene import round_up
 from linkwork.core.foundation.errors import InputError
 from tests.drawing.shared_area import shared_area
 
@@ -143,7 +144,7 @@ def test_rates_beside_a_dead_point_do_not_set_the_scale() -> None:
 
 def test_scales_are_short_numbers_not_below_what_is_wanted() -> None:
     for wanted in np.geomspace(1e-7, 1e7, 203).tolist():
-        found = round_up(wanted)
+        found = round_up(wanted, SCALES)
         assert wanted * (1 - 1e-9) <= found <= 1.51 * wanted
         assert float(f"{found:.1e}") == pytest.approx(found)
 

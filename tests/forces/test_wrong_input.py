@@ -76,7 +76,7 @@ def _told(text: str, driven: str = INPUT) -> list[str]:
         (
             'link = "rocker"\ntorque = "1 N*m"',
             "3 loads[1].torque column 3: numbers carry no unit here: write 1 and set "
-            'force = "N", length = "m" for the whole file; a product is written "1*N*m"'
+            'force = "N" for the whole file; a product is written "1*N"'
         ),
     ],
 )  # fmt: skip
@@ -94,7 +94,7 @@ SPRING = '[[springs]]\nname = "s"\n'
         (
             SPRING + 'between = ["A", "C"]\nstiffness = "2 N/mm"',
             "4 springs[1].stiffness column 3: numbers carry no unit here: write 2 and set "
-            'force = "N", length = "mm" for the whole file; a product is written "2*N/mm"'
+            'force = "N" for the whole file; a product is written "2*N"'
         ),
         (
             SPRING + 'between = ["A", "B"]\nstiffness = 2',

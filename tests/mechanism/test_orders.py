@@ -11,7 +11,14 @@ import pytest
 
 import linkwork as lw
 from linkwork.core.commands.check import check_lines
-from linkwork.core.mechanism.link_shape import Distance, Given, LinkShape, VertexAngle, place
+from linkwork.core.mechanism.link_shape import (
+    Distance,
+    Given,
+    LinkShape,
+    VertexAngle,
+    agrees,
+    place,
+)
 from linkwork.core.mechanism.linkage import Linkage
 from tests.campaigns.orders import partly_dimensioned, permuted, renamed
 from tests.described import described_as
@@ -52,7 +59,7 @@ def test_that_shape_is_the_nearest_to_the_sketch(turn: float) -> None:
     angle = VertexAngle("Q", "A", "P", turn * math.radians(45))
     shape = place(tuple(SKETCH), sketch, given, [angle])
     rows: list[Given] = [*given, angle]
-    assert all(row.agrees(shape.local, 1e-12) for row in rows)
+    assert all(agrees(row, shape.local, 1e-12) for row in rows)
 
     def distance(z: dict[str, complex]) -> float:
         """The root of the sum of squares after the best translation and rotation."""
@@ -61,12 +68,12 @@ def test_that_shape_is_the_nearest_to_the_sketch(turn: float) -> None:
         turned = places * np.exp(-1j * np.angle(places @ drawn.conj()))
         return float(np.linalg.norm(turned - drawn))
 
-    known = {frozenset(m.points): m.length for m in shape.measured}
+    known = {frozenset(m.points): m.size for m in shape.measured}
     assert len(known) == 2
     for changes in ((1, 0), (0, 1), (1, 1), (1, -1)):
         for step in (1e-4, -1e-4):
             moved = [
-                Distance(m.a, m.b, m.length * (1 + step * change))
+                Distance(m.a, m.b, m.size * (1 + step * change))
                 for m, change in zip(shape.measured, changes, strict=True)
             ]
             other = place(tuple(SKETCH), dict(shape.local), [*given, *moved], [angle])
@@ -78,7 +85,7 @@ def test_exactly_the_missing_distances_are_measured_as_sketched() -> None:
     shape = place(points, SKETCH, [Distance("A", "B", 91.0)], [])
     assert {frozenset(m.points) for m in shape.measured} == {frozenset("AP"), frozenset("BP")}
     for m in shape.measured:
-        assert m.length == pytest.approx(abs(SKETCH[m.a] - SKETCH[m.b]), rel=CLOSE)
+        assert m.size == pytest.approx(abs(SKETCH[m.a] - SKETCH[m.b]), rel=CLOSE)
 
 
 @pytest.mark.parametrize("ends", [("A", "P"), ("P", "A")])
@@ -101,7 +108,7 @@ def test_three_angles_of_a_triangle_take_its_size_from_the_sketch_and_say_so() -
     ]  # fmt: skip
     shape = place(("A", "B", "P"), SKETCH, [], given)
     (size,) = shape.measured
-    assert size.length == pytest.approx(abs(SKETCH[size.a] - SKETCH[size.b]), rel=1e-9)
+    assert size.size == pytest.approx(abs(SKETCH[size.a] - SKETCH[size.b]), rel=1e-9)
 
 
 def _bar() -> lw.Mechanism:

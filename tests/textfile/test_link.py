@@ -84,12 +84,12 @@ REFUSED = {
     "digits, - and _: copy the whole link again",
     "#lw1=AA\0A": "has the character '\\x00' at place 3 of its code, which has only letters, "
     "digits, - and _: copy the whole link again",
-    forged(b""): "is damaged: its code ends in the middle of the mechanism",
-    forged(GOOD[:-1]): "is damaged: its code ends in the middle of the mechanism",
-    forged(GOOD + b"12"): "is damaged: 2 bytes follow the mechanism",
-    forged(b"\xff" * 9): "is damaged: its code cannot be unpacked",
-    forged(squeezed(b"abc\xff")): "is damaged: byte 3 (0xff) is not UTF-8",
-    forged(squeezed(b"a\0")): "contains a NUL character: not a text file",
+    forged(b""): "is damaged: its code is not that of a mechanism file",
+    forged(GOOD[:-1]): "is damaged: its code is not that of a mechanism file",
+    forged(GOOD + b"12"): "is damaged: its code is not that of a mechanism file",
+    forged(b"\xff" * 9): "is damaged: its code is not that of a mechanism file",
+    forged(squeezed(b"abc\xff")): "is damaged: its code is not that of a mechanism file",
+    forged(squeezed(b"a\0")): "is damaged: its code is not that of a mechanism file",
     forged(squeezed(b"a" * (LARGEST + 1))): "unpacks to more than 1 MB: more is not read",
 }
 

@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator
 from dataclasses import dataclass, replace
-from typing import Any, Self
+from typing import Self
 
-from linkwork.contacts.curves import COORDINATES, coordinates, turned_back
+from linkwork.contacts.curves import COORDINATES, contours, coordinates, turned_back
 from linkwork.core.foundation.errors import choices
 from linkwork.core.foundation.names import GROUND
 from linkwork.core.foundation.values import (
@@ -140,7 +140,7 @@ class Cam(NamedPart):
         Key("radius", NumberKey("length"), "Radius of the roller"),
         Key("base", NumberKey("length"), "Radius of the base circle, with segments"),
         Key("start", NumberKey("angle"), "Angle of the cam at which the segments begin; default 0"),
-        Key("segments", Tables(_SEGMENT), "Motion of the follower in one turn of the cam"),
+        Key("segments", Tables(_SEGMENT, made=Segment), "The follower's motion in one turn"),
         Key("profile", COORDINATES, "Or the outline, in the cam's frame about its centre"),
     )
     kind = JointKind("C", 2, "cam")
@@ -158,11 +158,6 @@ class Cam(NamedPart):
     segments: tuple[Segment, ...] = ()
     start: Number = 0
     profile: tuple[tuple[Number, Number], ...] = ()
-
-    @classmethod
-    def of_table(cls, table: Mapping[str, Any]) -> Self:
-        segments = tuple(Segment(**row) for row in table.get("segments", ()))
-        return cls(**{**table, "segments": segments})
 
     @property
     def names(self) -> tuple[str, ...]:
@@ -310,11 +305,7 @@ class Cam(NamedPart):
                 radius=linkage.numbers(self.radius),
                 kind="roller",
             )
-        if self.name in outlines:
-            link, center, points = outlines[self.name]
-            yield CamOutline(
-                name=self.name, link=link, center=center, points=tuple(map(complex, points))
-            )
+        yield from contours(CamOutline, [self.name], outlines)
         yield follower
 
     def sketched_outlines(self, linkage: Bodies) -> Iterator[tuple[str, Outline]]:

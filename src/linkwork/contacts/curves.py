@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, replace
 from itertools import pairwise
-from typing import ClassVar, Self
+from typing import Any, ClassVar, Self
 
 from linkwork.core.expression.grammar import parse
 from linkwork.core.expression.values import value
@@ -47,6 +47,17 @@ from linkwork.core.mechanism.part.part import (
 COORDINATES = ListOf(ListOf(NumberKey("length"), "coordinate", 2, 2), "point", 3)
 
 Pairs = tuple[tuple[Number, Number], ...]
+
+
+def contours(
+    kind: type[Contour], names: Iterable[str], outlines: Outlines, **more: Any
+) -> Iterator[Contour]:
+    """The contours of these names that have an outline."""
+    for name in names:
+        if name in outlines:
+            link, center, points = outlines[name]
+            corners = tuple(map(complex, points))
+            yield kind(name=name, link=link, center=center, points=corners, **more)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -144,16 +155,8 @@ class Curve(NamedPart):
         yield self.name, (self.on, self.origin, coordinates(self.through, linkage))
 
     def figures(self, linkage: Bodies, outlines: Outlines) -> Iterator[Figure]:
-        if self.name in outlines:
-            link, center, points = outlines[self.name]
-            yield CurvedSlot(
-                name=self.name,
-                link=link,
-                center=center,
-                points=tuple(map(complex, points)),
-                closed=self.closed,
-                point=self.point,
-            )
+        more = {"closed": self.closed, "point": self.point}
+        yield from contours(CurvedSlot, [self.name], outlines, **more)
 
     def inverted(self, inversion: Inversion) -> Self:
         """The curve on the same link; one of the old ground is given in its new axes."""
@@ -308,13 +311,8 @@ class NoncircularGear(ToothedPart, ArmPair):
             yield f"{self.name}{suffix}", (wheel, center, circle(self.distance(linkage) / 2))
 
     def figures(self, linkage: Bodies, outlines: Outlines) -> Iterator[Figure]:
-        for suffix in self.curves:
-            name = f"{self.name}{suffix}"
-            if name in outlines:
-                link, center, points = outlines[name]
-                yield PitchCurve(
-                    name=name, link=link, center=center, points=tuple(map(complex, points))
-                )
+        names = [f"{self.name}{suffix}" for suffix in self.curves]
+        yield from contours(PitchCurve, names, outlines)
 
     def size_of(self, link: str, linkage: Bodies) -> float | None:
         """Half of the centre distance."""

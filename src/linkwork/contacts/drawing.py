@@ -11,7 +11,16 @@ from linkwork.contacts.curves import CurvedSlot, PitchCurve
 from linkwork.core.drawing.links import contour_line, contour_mark, convex_outline, stems, tones
 from linkwork.core.drawing.parts import figure_symbols
 from linkwork.core.drawing.pose import Pose
-from linkwork.core.drawing.scene import Hatch, Measures, Polygon, Polyline, Primitive, Role, xy
+from linkwork.core.drawing.scene import (
+    Hatch,
+    Measures,
+    Polyline,
+    Primitive,
+    Role,
+    drawn_area,
+    drawn_line,
+    xy,
+)
 from linkwork.core.foundation.arrays import ComplexArray
 from linkwork.core.foundation.names import GROUND
 from linkwork.core.mechanism.bodies import CamOutline, Contour, Follower
@@ -32,12 +41,8 @@ def cam_symbols(
         yield from _follower(figure, pose, measures)
         return
     fixed, tone = figure.link == GROUND, tones(pose).get(figure.link, 0)
-    yield Polygon(
-        role=Role.FRAME if fixed else Role.WHEEL,
-        of=figure.link,
-        tone=tone,
-        points=tuple(map(xy, contour_line(pose, figure))),
-    )
+    role = Role.FRAME if fixed else Role.WHEEL
+    yield drawn_area(role, figure.link, contour_line(pose, figure), tone)
     if not fixed:
         yield contour_mark(pose, figure, tone, measures)
 
@@ -52,8 +57,8 @@ def _follower(follower: Follower, pose: Pose, measures: Measures) -> Iterator[Po
     if follower.contact == "flat" and drawn:
         lines.append(_face(pose, follower, measures))
     tone = tones(pose).get(follower.link, 0)
-    for start, end in lines:
-        yield Polyline(role=Role.LINK, of=follower.link, tone=tone, points=(xy(start), xy(end)))
+    for ends in lines:
+        yield drawn_line(Role.LINK, follower.link, ends, tone)
 
 
 def _face(pose: Pose, follower: Follower, measures: Measures) -> tuple[complex, complex]:
@@ -99,8 +104,7 @@ def curve_symbols(contour: CurvedSlot, pose: Pose, measures: Measures) -> Iterat
     if not fixed:
         yield from _plate(pose, contour, line, number)
     for edge in edges:
-        points = (*map(xy, edge), xy(edge[0]))
-        yield Polyline(role=role, of=contour.name, tone=number, points=points)
+        yield drawn_line(role, contour.name, [*edge, edge[0]], number)
     if fixed:
         yield _hatching(line + measures.slot * away, along, away, measures, contour.name)
 
@@ -146,7 +150,7 @@ def _plate(pose: Pose, contour: Contour, line: ComplexArray, tone: int) -> Itera
     own = next(bar.points for bar in pose.skeleton.bars if bar.name == contour.link)
     around = [complex(z) for z in line[:: max(1, len(line) // _OF_PLATE)]]
     corners = convex_outline([*around, *(pose.points[name] for name in own)])
-    yield Polygon(role=Role.PLATE, of=contour.link, tone=tone, points=tuple(map(xy, corners)))
+    yield drawn_area(Role.PLATE, contour.link, corners, tone)
 
 
 # ----------------------------------------------------------------------
@@ -159,9 +163,9 @@ def noncircular_gear_symbols(
 ) -> Iterator[Primitive]:
     """The wheel, its pitch curve, and a mark in the direction of its link."""
     fixed, tone = curve.link == GROUND, tones(pose).get(curve.link, 0)
-    corners = tuple(map(xy, contour_line(pose, curve)))
+    corners = contour_line(pose, curve)
     role = Role.FRAME if fixed else Role.WHEEL
-    yield Polygon(role=role, of=curve.link, tone=tone, points=corners)
-    yield Polyline(role=Role.PITCH, of=curve.name, points=(*corners, corners[0]))
+    yield drawn_area(role, curve.link, corners, tone)
+    yield drawn_line(Role.PITCH, curve.name, [*corners, corners[0]])
     if not fixed:
         yield contour_mark(pose, curve, tone, measures)

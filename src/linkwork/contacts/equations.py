@@ -4,13 +4,14 @@ from __future__ import annotations
 
 import cmath
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
+from dataclasses import replace
 from fractions import Fraction
 
 import numpy as np
 
 from linkwork.contacts.cams import Cam
-from linkwork.contacts.curves import Curve, NoncircularGear
+from linkwork.contacts.curves import Curve, NoncircularGear, coordinates
 from linkwork.contacts.profiles import Outline, Undercut, follower_of, program_of, spline
 from linkwork.core.equations.frames import PartRows, Place
 from linkwork.core.equations.model import LawEquation, LoopEquation, MeasuredInPart, Term
@@ -35,12 +36,9 @@ from linkwork.core.table.rows import Piecewise
 @write_rows.register
 def write_curve(curve: Curve, key: Key, rows: PartRows) -> None:
     """X = x(u), Y = y(u) in the frame of the curve's body."""
-    numbers = rows.frames.linkage.numbers
-    points = [complex(numbers(x), numbers(y)) for x, y in curve.through]
-    outline = Outline.through(points, closed=curve.closed)
-    place = on_outline(
-        rows, curve.name, (curve.on, curve.origin), curve.point, outline, curve.closed
-    )
+    outline = Outline.through(coordinates(curve.through, rows.frames.linkage), closed=curve.closed)
+    at = (curve.on, curve.origin)
+    place = on_outline(rows, curve.name, at, curve.point, outline, curve.closed)
     rows.put(curve.on, curve.point, place, key)
 
 
@@ -124,12 +122,12 @@ def _programmed(rows: PartRows, cam: Cam, key: Key) -> None:
     rows.laws.append(
         LawEquation(
             label=cam.name,
-            terms=tuple((canonical(name), weight) for name, weight in weights.items()),
+            terms=_named(weights),
             constant=uniform_value(constant.high),
             law=motion.times(found.sign),
             shown=cam.name,
             meaning=_motion_text(cam, found.sign),
-            inner=tuple((canonical(name), weight) for name, weight in turned.items()),
+            inner=_named(turned),
             offset=uniform_value((at - start).high),
             kind="length" if found.length else "angle",
         )
@@ -148,13 +146,14 @@ def _programmed(rows: PartRows, cam: Cam, key: Key) -> None:
     rows.outlines[cam.name] = (cam.cam, cam.center, outline)
 
 
+def _named(weights: Mapping[str, float]) -> tuple[tuple[str, float], ...]:
+    return tuple((canonical(name), weight) for name, weight in weights.items())
+
+
 def _outlined(rows: PartRows, cam: Cam, key: Key) -> None:
     """A cam given by its outline."""
     linkage = rows.frames.linkage
-    numbers = linkage.numbers
-    outline = Outline.through(
-        [complex(numbers(x), numbers(y)) for x, y in cam.profile], closed=True
-    )
+    outline = Outline.through(coordinates(cam.profile, linkage), closed=True)
     point = cam.point
     if cam.slider is not None:
         guide = guide_named(linkage, cam.slider)
@@ -191,13 +190,11 @@ def _check_hollows(rows: PartRows, cam: Cam, outline: Outline, key: Key) -> None
 
 def _direction(rows: PartRows, name: str, outline: Outline, tangent: Term) -> None:
     """The curve's derivative as a direction times its magnitude T, the speed along the curve."""
-    u = np.array([rows.frames.start[name]])
-    slopes = {"dx": outline.x.slope(), "dy": outline.y.slope()}
-    for axis, law in slopes.items():
-        rows.unknown(f"{name}_{axis}", "length", float(law(u)[0]))
-        add_law(rows, f"{name} {axis}", f"{name}_{axis}", law, (name, axis[1], 1))
-    speed = math.hypot(*(rows.frames.start[f"{name}_{axis}"] for axis in slopes))
-    rows.unknown(f"{name}_speed", "length", speed)
+    along = outline.slope(rows.frames.start[name])
+    for axis, start, law in (("x", along.real, outline.x), ("y", along.imag, outline.y)):
+        rows.unknown(f"{name}_d{axis}", "length", start)
+        add_law(rows, f"{name} d{axis}", f"{name}_d{axis}", law.slope(), (name, axis, 1))
+    rows.unknown(f"{name}_speed", "length", math.hypot(along.real, along.imag))
     rows.loops.append(
         LoopEquation(
             label=f"{name} direction",
@@ -216,8 +213,7 @@ def _beside(
     """The centre of a roller: offset by its radius along the outward normal β."""
     frames = rows.frames
     radius = frames.linkage.numbers(cam.radius)
-    u = np.array([frames.start[cam.name]])
-    along = complex(float(outline.x.slope()(u)[0]), float(outline.y.slope()(u)[0]))
+    along = outline.slope(frames.start[cam.name])
     normal = rows.unknown(f"{cam.name}_normal", "angle", phase_of(along / 1j))
     speed = canonical(f"{cam.name}_speed")
     tangent = Term(value=1j, turn=math.pi / 2, length=speed, phase=((normal, 1.0),))
@@ -225,13 +221,7 @@ def _beside(
     size = canonical(f"{cam.name}_roller")
     frames.symbols[size] = radius
     arm = frames.vector_term(radius + 0j, Name(size, size), at[0])
-    arm = Term(
-        value=arm.value,
-        magnitude=arm.magnitude,
-        sign=arm.sign,
-        turn=arm.turn,
-        phase=(*arm.phase, (normal, 1.0)),
-    )
+    arm = replace(arm, phase=(*arm.phase, (normal, 1.0)))
     return Place(place.fixed, (*place.sliding, arm), base=place.base)
 
 
@@ -267,10 +257,7 @@ def _flat(
     frames.start[cam.name] = u
     here = complex(outline.at(np.array([u]))[0])
     frames.start[f"{cam.name}_x"], frames.start[f"{cam.name}_y"] = here.real, here.imag
-    slope = complex(
-        float(outline.x.slope()(np.array([u]))[0]), float(outline.y.slope()(np.array([u]))[0])
-    )
-    sign = 1.0 if (slope * facing.conjugate()).real > 0 else -1.0
+    sign = 1.0 if (outline.slope(u) * facing.conjugate()).real > 0 else -1.0
     phase: dict[str, float] = {}
     for part, weight in ((angle, 1.0), (other, -1.0)):
         if part.variable is not None:
@@ -278,12 +265,8 @@ def _flat(
             phase[symbol] = phase.get(symbol, 0.0) + weight
     sine, cosine = sin_cos(frames.constant[frame] - frames.constant[cam.cam])
     unit = line * joined(cosine, sine) * sign
-    tangent = Term.vector(
-        unit.high,
-        None,
-        canonical(f"{cam.name}_speed"),
-        tuple((n, w) for n, w in phase.items() if w),
-    )
+    turning = tuple((name, weight) for name, weight in phase.items() if weight)
+    tangent = Term.vector(unit.high, None, canonical(f"{cam.name}_speed"), turning)
     _direction(rows, cam.name, outline, tangent)
     turned = cmath.exp(1j * (other.constant + frames.now(other)))
     touch = linkage.sketched(cam.center) + here * turned
@@ -356,11 +339,11 @@ def write_noncircular_gear(gear: NoncircularGear, key: Key, rows: PartRows) -> N
     rows.laws.append(
         LawEquation(
             label=gear.name,
-            terms=tuple((canonical(name), weight) for name, weight in weights.items()),
+            terms=_named(weights),
             constant=uniform_value(constant),
             law=law,
             shown=canonical(gear.name),
-            inner=tuple((canonical(name), weight) for name, weight in inner.items()),
+            inner=_named(inner),
             offset=uniform_value(offset.high),
             meaning=f"{gear.name} is the lead of the second wheel over uniform rotation",
             kind="angle",

@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 
 from linkwork.contacts.cams import Cam
-from linkwork.contacts.curves import Curve, NoncircularGear
+from linkwork.contacts.curves import Curve, NoncircularGear, coordinates
 from linkwork.contacts.profiles import Outline
 from linkwork.core.foundation.arrays import ComplexArray
 from linkwork.core.foundation.lanes import chained, is_batched
@@ -135,9 +135,8 @@ def drive_curve(curve: Curve, bodies: FreeBodies) -> int:
 
 def _tangent(curve: Curve, bodies: FreeBodies) -> ComplexArray:
     """The derivative of the curve by its coordinate, (B,)."""
-    numbers, geometry = bodies.linkage.numbers, bodies.geometry
-    points = [complex(numbers(x), numbers(y)) for x, y in curve.through]
-    outline = Outline.through(points, closed=curve.closed)
+    geometry = bodies.geometry
+    outline = Outline.through(coordinates(curve.through, bodies.linkage), closed=curve.closed)
     u = geometry.own(curve.name).v
     local = _slope(outline.x, u) + 1j * _slope(outline.y, u)
     found: ComplexArray = local * geometry.direction(curve.on).v

@@ -67,6 +67,11 @@ class Outline:
         breaks = self.x.breaks
         return np.linspace(breaks[0], breaks[-1], count or _OUTLINE_SAMPLES * (len(breaks) - 1) + 1)
 
+    def slope(self, u: float) -> complex:
+        """The derivative of the point by the parameter, x' + iy'."""
+        at = np.array([u])
+        return complex(float(self.x.slope()(at)[0]), float(self.y.slope()(at)[0]))
+
     def bend(self, u: Array) -> Array:
         """Curvature [1/length], positive where the curve turns to the left."""
         x, y = self.x.jet(u), self.y.jet(u)
@@ -334,10 +339,8 @@ def _sliding(cam: Cam, guide: GuidePart, frames: Frames, motion: Piecewise) -> F
     center = (shapes.place(guide.on, cam.center) - origin) * direction.conjugate()
     offset = numbers.precise(guide.offset if isinstance(guide, Slider) else 0)
     away = offset - center.imag
-    reach, roller = (
-        numbers.precise(cam.base or 0) + numbers.precise(cam.radius),
-        numbers(cam.radius),
-    )
+    reach = numbers.precise(cam.base or 0) + numbers.precise(cam.radius)
+    roller = numbers(cam.radius)
     sign = plain_value(copysign(1.0, frames.start[guide.name] - center.high.real))
     flat = cam.contact == "flat"
     between = abs(away)

@@ -11,7 +11,7 @@ import re
 from linkwork.core.foundation.names import GROUND
 from linkwork.core.foundation.units import LENGTHS
 from linkwork.core.mechanism.inputs import Input
-from linkwork.core.mechanism.part.index import PARTS
+from linkwork.core.mechanism.part.weld import Weld
 from linkwork.readers.assembly import Assembly, Source, drive_joint
 from linkwork.readers.robots import Element, xml_tree
 
@@ -135,9 +135,7 @@ class _Document:
         elif node.get("id") in self.links:
             link = self.links[node.get("id")]
             if self.assembly.carries(link) & self.assembly.carries(other):
-                self.assembly.parts["welds"].append(
-                    PARTS["welds"].of_table({"links": [other, link]})
-                )
+                self.assembly.parts["welds"].append(Weld(links=(other, link)))
             else:
                 self.source.leave_out(
                     f"line {node.line}", "fastened link without a common connector"

@@ -12,9 +12,9 @@ from typing import Any
 import click
 
 from linkwork import wings
+from linkwork.core import drawing
 from linkwork.core.api.mechanism import Mechanism
 from linkwork.core.commands.terminal import Decorator
-from linkwork.core.drawing.annotations import Force, check_forces
 from linkwork.core.foundation.errors import ExpressionError, InputError, MechanismError
 from linkwork.core.foundation.files import save_pieces
 from linkwork.core.foundation.statuses import ChangePointPolicy
@@ -35,19 +35,6 @@ def number_or_formula(text: str) -> float | str:
         return float(text)
     except ValueError:
         return text.strip()
-
-
-class _Number(click.ParamType):  # type: ignore[type-arg]  # generic since click 8.4 only
-    """A number, or a formula of the file's dimensions."""
-
-    name = "number"
-
-    def convert(self, value: Any, param: Any, ctx: Any) -> float | str:
-        """A number, or the text of a formula, which is checked once the mechanism is read."""
-        return number_or_formula(value) if isinstance(value, str) else float(value)
-
-
-NUMBER = _Number()
 
 
 file_argument: Decorator = click.argument("file", metavar="FILE")
@@ -90,19 +77,22 @@ through_option: Decorator = click.option(
     "--through", is_flag=True, help="Continue through dead points around the circuit."
 )
 
-change_points_option: Decorator = click.option(
-    "--change-points",
-    type=click.Choice([policy.value for policy in ChangePointPolicy]),
-    default=ChangePointPolicy.STOP.value,
-    show_default=True,
-    help="At a change point: stop, go straight on, or turn onto the other branch.",
+
+def _change_points(about: str, policies: Iterable[ChangePointPolicy]) -> Decorator:
+    return click.option(
+        "--change-points",
+        type=click.Choice([policy.value for policy in policies]),
+        default=ChangePointPolicy.STOP.value,
+        show_default=True,
+        help=f"At a change point: {about}.",
+    )
+
+
+change_points_option = _change_points(
+    "stop, go straight on, or turn onto the other branch", ChangePointPolicy
 )
-straight_option: Decorator = click.option(
-    "--change-points",
-    type=click.Choice([ChangePointPolicy.STOP.value, ChangePointPolicy.STRAIGHT.value]),
-    default=ChangePointPolicy.STOP.value,
-    show_default=True,
-    help="At a change point: stop, or go straight on.",
+straight_option = _change_points(
+    "stop, or go straight on", (ChangePointPolicy.STOP, ChangePointPolicy.STRAIGHT)
 )
 
 
@@ -123,10 +113,16 @@ def columns_option(about: str) -> Decorator:
 
 def range_options(command: Callable[..., Any]) -> Callable[..., Any]:
     """``--from``, ``--to`` and ``--step`` of a sweep."""
-    command = click.option("--step", type=NUMBER, help="Step between input values.")(command)
-    command = click.option("--to", "to", type=NUMBER, help="Last input value.")(command)
-    first = "First input value, in the file's unit."
-    return click.option("--from", "from_", type=NUMBER, help=first)(command)
+    about = {
+        "step": "Step between input values.",
+        "to": "Last input value.",
+        "from_": "First input value, in the file's unit.",
+    }
+    for name, said in about.items():
+        flag = f"--{name.rstrip('_')}"
+        option = click.option(flag, name, metavar="NUMBER", type=number_or_formula, help=said)
+        command = option(command)
+    return command
 
 
 def input_values(mechanism: Mechanism, asked: tuple[str, ...]) -> dict[str, float] | None:
@@ -160,7 +156,7 @@ def input_values(mechanism: Mechanism, asked: tuple[str, ...]) -> dict[str, floa
     return found
 
 
-def forces_of(mechanism: Mechanism, asked: tuple[str, ...]) -> tuple[Force, ...]:
+def forces_of(mechanism: Mechanism, asked: tuple[str, ...]) -> tuple[drawing.Force, ...]:
     """The forces of ``--force``.
 
     Raises
@@ -171,7 +167,7 @@ def forces_of(mechanism: Mechanism, asked: tuple[str, ...]) -> tuple[Force, ...]
         If the mechanism has no such point.
     """
     forces = tuple(map(_force, asked))
-    check_forces(forces, mechanism.model.compiled.points.names)
+    drawing.check_forces(forces, mechanism.model.compiled.points.names)
     return forces
 
 
@@ -179,14 +175,14 @@ _NUMBER = r"([-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?)"
 _FORCE = re.compile(rf"\s*(.+?)\s*=\s*{_NUMBER}\s*,\s*{_NUMBER}\s*([^\W\d].*?)?\s*")
 
 
-def _force(text: str) -> Force:
+def _force(text: str) -> drawing.Force:
     match = _FORCE.fullmatch(text)
     if match is None:
         raise InputError(
             f'--force {text}: a force is a point and two components, --force "C=0,-981 N"'
         )
     name, x, y, unit = match.groups()
-    return Force(at=name, x=float(x), y=float(y), unit=unit or "")
+    return drawing.Force(at=name, x=float(x), y=float(y), unit=unit or "")
 
 
 # ----------------------------------------------------------------------
@@ -309,9 +305,10 @@ def text_of_source(file: str) -> tuple[str, str]:
     return source_text(file)
 
 
-def names_to_copy() -> tuple[str, ...]:
+def names_to_copy() -> Iterator[str]:
     """The mechanisms of the library, and the tasks to begin with."""
-    return (*examples(), *wings.use("synthesis.tasks.templates").template_names())
+    yield from examples()
+    yield from wings.use("synthesis.tasks.templates").template_names()
 
 
 def text_to_copy(name: str) -> str:
@@ -322,8 +319,9 @@ def text_to_copy(name: str) -> str:
     UnknownNameError
         If there is none of this name.
     """
-    tasks = wings.use("synthesis.tasks.templates")
-    return tasks.template_text(name) if name in tasks.template_names() else example_text(name)
+    if name in examples() or name not in names_to_copy():
+        return example_text(name)
+    return wings.use("synthesis.tasks.templates").template_text(name)
 
 
 def mechanism_of(text: str, name: str, changes: tuple[str, ...] = ()) -> Mechanism:

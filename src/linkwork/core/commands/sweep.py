@@ -10,6 +10,7 @@ from typing import Any
 import click
 
 from linkwork import wings
+from linkwork.core import drawing
 from linkwork.core.api.mechanism import Mechanism
 from linkwork.core.commands.options import (
     at_option,
@@ -44,11 +45,6 @@ from linkwork.core.commands.terminal import (
     title_lines,
     wrapped,
 )
-from linkwork.core.drawing.annotations import SceneOptions
-from linkwork.core.drawing.mechanism_scene import scene_of
-from linkwork.core.drawing.picture_file import check_picture, write
-from linkwork.core.drawing.pose import no_points
-from linkwork.core.drawing.scene import THEMES, Scene
 from linkwork.core.foundation.arrays import Array
 from linkwork.core.foundation.containers import FrozenDict
 from linkwork.core.foundation.statuses import Status
@@ -79,7 +75,7 @@ def check_points(mechanism: Mechanism) -> None:
         If the mechanism has no points.
     """
     if not mechanism.model.compiled.points.names:
-        raise no_points(mechanism.name)
+        raise drawing.no_points(mechanism.name)
 
 
 def write_plot(motion: Motion, names: Sequence[str], path: str, over: str = "the input") -> str:
@@ -87,15 +83,15 @@ def write_plot(motion: Motion, names: Sequence[str], path: str, over: str = "the
     if not motion.found.any():
         return f"Did not write {path}: there is no position to plot."
     with progress("drawing"):
-        write(wings.use("writers.charts.plotting").motion_plot(motion, names), path)
+        drawing.write(wings.use("writers.charts.plotting").motion_plot(motion, names), path)
     return f"Wrote {path}: {', '.join(names) or 'unknowns and outputs'} over {over}."
 
 
-def sweep_scene(position: Position, motion: Motion) -> Scene:
+def sweep_scene(position: Position, motion: Motion) -> drawing.Scene:
     """The start position of a sweep, faint further positions, its limits and the traced paths."""
     if not motion.found.any():
-        return scene_of(position)
-    return scene_of(position, motion, options=SceneOptions(further=_FURTHER))
+        return drawing.scene_of(position)
+    return drawing.scene_of(position, motion, options=drawing.SceneOptions(further=_FURTHER))
 
 
 # ----------------------------------------------------------------------
@@ -213,7 +209,7 @@ def sweep_command(
     """
     for name in (draw, plot):
         if name is not None:
-            check_picture(name)
+            drawing.check_picture(name)
     check_outputs(file, csv, draw, plot, workbook=xlsx, as_json=as_json)
     if xlsx is not None:
         wings.use("writers.workbook.workbook").check_xlsxwriter()
@@ -252,7 +248,7 @@ def sweep_command(
         context.exit(0 if answers(motion, through=through) else 1)
 
 
-def _scene(mechanism: Mechanism, motion: Motion, configuration: str | None) -> Scene | None:
+def _scene(mechanism: Mechanism, motion: Motion, configuration: str | None) -> drawing.Scene | None:
     """The picture of the motion; None if there is no start to draw."""
     start = mechanism.solve(configuration=configuration)
     if not start.status.ok:
@@ -274,13 +270,13 @@ def _split_names(mechanism: Mechanism, names: tuple[str, ...]) -> tuple[list[str
 
 
 def _written(
-    motion: Motion, table: Table, page: Scene | None, csv: str | None, draw: str | None
+    motion: Motion, table: Table, page: drawing.Scene | None, csv: str | None, draw: str | None
 ) -> list[str]:
     """Write the requested files; returns one line about each."""
     said = write_table(csv, table)
     if draw is not None and page is not None:
         with progress("drawing"):
-            write(page, draw)
+            drawing.write(page, draw)
         moving = ", and the motion faintly" if motion.found.any() else ""
         said.append(f"Wrote {draw}: the start position{moving}.")
     elif draw is not None:
@@ -365,7 +361,7 @@ def _data(motion: Motion, table: Table, numbers: list[str]) -> dict[str, Any]:
 @click.option("--link-names", is_flag=True, help="Label the links with their names.")
 @click.option(
     "--theme",
-    type=click.Choice(tuple(THEMES)),
+    type=click.Choice(("light", "dark")),
     default="light",
     help="Colours of the page: light (the default) or dark.",
 )
@@ -393,13 +389,13 @@ def draw_command(
       linkwork draw fourbar.toml -o load.svg --force "B=0,-981 N"
       linkwork draw fourbar.toml -o poles.pdf --centres --centrodes coupler
     """
-    check_picture(output)
+    drawing.check_picture(output)
     check_outputs(file, output)
     mechanism = read_mechanism(file, changes)
     if not vectors:
         check_points(mechanism)
     values = input_values(mechanism, at)
-    options = SceneOptions(forces=forces_of(mechanism, forces), **shown)
+    options = drawing.SceneOptions(forces=forces_of(mechanism, forces), **shown)
     with progress("sweeping") as tell:
         scene = mechanism.scene(
             values,
@@ -410,5 +406,5 @@ def draw_command(
             progress=tell,
         )
     with progress("drawing"):
-        write(scene, output, theme=THEMES[theme])
+        drawing.write(scene, output, theme=drawing.THEMES[theme])
     print_written(output, as_json)

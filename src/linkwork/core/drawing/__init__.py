@@ -7,7 +7,11 @@ from typing import TYPE_CHECKING
 from linkwork.core.foundation.loading import loader
 
 if TYPE_CHECKING:
-    from linkwork.core.drawing.annotations import SceneOptions as SceneOptions
+    from linkwork.core.drawing.annotations import (
+        Force as Force,
+        SceneOptions as SceneOptions,
+        check_forces as check_forces,
+    )
     from linkwork.core.drawing.matplotlib_writer import figure as figure
     from linkwork.core.drawing.mechanism_scene import (
         Sheet as Sheet,
@@ -15,7 +19,12 @@ if TYPE_CHECKING:
         reach_of as reach_of,
         scene_of as scene_of,
     )
-    from linkwork.core.drawing.picture_file import render as render, write as write
+    from linkwork.core.drawing.picture_file import (
+        check_picture as check_picture,
+        render as render,
+        write as write,
+    )
+    from linkwork.core.drawing.pose import no_points as no_points
     from linkwork.core.drawing.scene import (
         DARK as DARK,
         LIGHT as LIGHT,

@@ -10,7 +10,15 @@ import numpy as np
 
 from linkwork.core.drawing.labels import Choice, places_beside
 from linkwork.core.drawing.pose import Pose, printed_name
-from linkwork.core.drawing.scene import Box, Disc, Measures, Polyline, Primitive, Role, xy
+from linkwork.core.drawing.scene import (
+    Box,
+    Measures,
+    Primitive,
+    Role,
+    drawn_disc,
+    drawn_line,
+    round_up,
+)
 from linkwork.core.foundation.errors import InputError, UnknownNameError, choices, internal
 from linkwork.core.foundation.values import check_values
 from linkwork.core.results.motion import Motion
@@ -18,7 +26,7 @@ from linkwork.core.results.position import Position
 from linkwork.core.results.quantity import Kind, Rate
 from linkwork.core.results.vector_loop import VectorLoop
 
-_SHORT = (1.0, 1.5, 2.0, 2.5, 3.0, 4.0, 5.0, 6.0, 8.0, 10.0)
+SCALES = (1.0, 1.5, 2.0, 2.5, 3.0, 4.0, 5.0, 6.0, 8.0)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -47,12 +55,6 @@ class Annotation:
             names=[name for part in every for name in part.names],
             caption="; ".join(part.caption for part in every if part.caption),
         )
-
-
-def round_up(wanted: float) -> float:
-    """A positive number rounded up to 1, 1.5, 2, 2.5, 3, 4, 5, 6 or 8 times a power of ten."""
-    power: float = 10.0 ** int(f"{wanted:e}".partition("e")[2])
-    return min(step * power for step in _SHORT if step * power >= wanted * (1.0 - 1e-12))
 
 
 # ----------------------------------------------------------------------
@@ -84,11 +86,10 @@ def position_marks(marks: Sequence[PositionMark], measures: Measures) -> Annotat
     ring = (_RING if few else _SMALL_RING) * measures.pin
     for number, mark in enumerate(marks, start=1):
         of = str(number)
-        drawn.append(Disc(role=Role.POSITION, of=of, centre=xy(mark.place), radius=ring))
+        drawn.append(drawn_disc(Role.POSITION, of, mark.place, ring))
         if mark.direction is not None:
-            ends = (ring, _ARM * measures.pin)
-            points = tuple(xy(mark.place + length * mark.direction) for length in ends)
-            drawn.append(Polyline(role=Role.POSITION, of=of, points=points))
+            ends = (mark.place + far * mark.direction for far in (ring, _ARM * measures.pin))
+            drawn.append(drawn_line(Role.POSITION, of, ends))
     numbered = marks if few else marks[:1]
     names = [
         places_beside(Role.POSITION_NAME, str(k), str(k), mark.place, 0.8 * measures.text, measures)
@@ -177,20 +178,15 @@ LONGEST = 0.3
 _SHORTEST = 1.5  # in pin radii: shorter arrows would be hidden by the pin
 
 
-@dataclass(frozen=True, kw_only=True)
-class ArrowLook:
-    """Roles of a kind of arrow and of its names, and its letter, such as v for velocities."""
-
-    role: Role
-    name_role: Role
-    letter: str
+#: Letters of the names of arrows.
+_LETTERS = {Role.VELOCITY: "v", Role.ACCELERATION: "a", Role.FORCE: "F"}
 
 
 def point_arrows(
     vectors: Mapping[str, complex],
     points: Mapping[str, complex],
     scale: float,
-    look: ArrowLook,
+    role: Role,
     measures: Measures,
 ) -> tuple[Annotation, list[str]]:
     """Arrows from points, and the points whose arrows are too short to draw.
@@ -213,9 +209,9 @@ def point_arrows(
             continue
         # the head of a short arrow would hide its line
         head = min(measures.head, 0.5 * abs(tip - tail))
-        drawn.append(Polyline(role=look.role, of=name, points=(xy(tail), xy(tip)), head=head))
-        text = f"{look.letter}({printed_name(name)})"
-        names.append(places_beside(look.name_role, name, text, tip, 0.8 * measures.text, measures))
+        drawn.append(drawn_line(role, name, (tail, tip), head=head))
+        text, name_role = f"{_LETTERS[role]}({printed_name(name)})", Role[f"{role.name}_NAME"]
+        names.append(places_beside(name_role, name, text, tip, 0.8 * measures.text, measures))
     return Annotation(drawn=drawn, names=names), short
 
 
@@ -247,10 +243,7 @@ def scale_caption(word: str, scale: float, length_unit: str, unit: str, size: fl
 
 
 _WORD = {1: "velocity", 2: "acceleration"}
-_RATE_ARROWS_LOOK = {
-    1: ArrowLook(role=Role.VELOCITY, name_role=Role.VELOCITY_NAME, letter="v"),
-    2: ArrowLook(role=Role.ACCELERATION, name_role=Role.ACCELERATION_NAME, letter="a"),
-}
+_RATE_ROLES = {1: Role.VELOCITY, 2: Role.ACCELERATION}
 _FAST = 0.95  # share of the rows that are not counted as fastest
 _BEYOND = 3.0  # speed ratio to the others for rows near a dead point
 
@@ -278,8 +271,8 @@ def rate_arrows(
         most = max(usual_most(np.concatenate(rows)), most)
     if not most:
         return Annotation(caption=f"{_WORD[order]}: none, no point moves")
-    scale = 1.0 / round_up(most / (LONGEST * measures.size))
-    arrows, short = point_arrows(rates, pose.points, scale, _RATE_ARROWS_LOOK[order], measures)
+    scale = 1.0 / round_up(most / (LONGEST * measures.size), SCALES)
+    arrows, short = point_arrows(rates, pose.points, scale, _RATE_ROLES[order], measures)
     rate = rate_of(order, by_time)
     unit = rate.unit(Kind.LENGTH, position.units, position.derivative_unit).replace("^2", "²")
     caption = scale_caption(_WORD[order], scale, position.units.length, unit, measures.size)
@@ -337,9 +330,6 @@ def _rates(position: Position, pose: Pose, order: int) -> dict[str, complex]:
 # point are drawn separately.
 
 
-_FORCE_ARROWS_LOOK = ArrowLook(role=Role.FORCE, name_role=Role.FORCE_NAME, letter="F")
-
-
 def force_arrows(
     forces: Sequence[Force], pose: Pose, length_unit: str, measures: Measures
 ) -> Annotation:
@@ -356,11 +346,11 @@ def force_arrows(
     most = max(abs(complex(force.x, force.y)) for force in forces)
     if not most:
         return Annotation(caption="force: all are zero")
-    scale = 1.0 / round_up(most / (LONGEST * measures.size))
+    scale = 1.0 / round_up(most / (LONGEST * measures.size), SCALES)
     parts = []
     for force in forces:
         vector = {force.at: complex(force.x, force.y)}
-        parts.append(point_arrows(vector, pose.points, scale, _FORCE_ARROWS_LOOK, measures)[0])
+        parts.append(point_arrows(vector, pose.points, scale, Role.FORCE, measures)[0])
     caption = scale_caption("force", scale, length_unit, force_unit(forces), measures.size)
     drawn = {primitive.of for part in parts for primitive in part.drawn}
     hidden_at = [force.at for force in forces if force.at not in drawn]

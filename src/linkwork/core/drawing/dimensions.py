@@ -24,15 +24,15 @@ from linkwork.core.drawing.links import convex_outline, in_line
 from linkwork.core.drawing.paths import centre_symbols, centrode_symbols, colour_scale, speed_traces
 from linkwork.core.drawing.pose import Pose, printed_name, printed_value
 from linkwork.core.drawing.scene import (
-    Arc,
     Box,
     Measures,
     Polyline,
     Primitive,
     Role,
-    Text,
+    drawn_arc,
+    drawn_line,
+    drawn_text,
     text_width,
-    xy,
 )
 from linkwork.core.drawing.vectors import Edge, vector_symbols
 from linkwork.core.foundation.lanes import phase
@@ -139,12 +139,9 @@ def _radii(pose: Pose, measures: Measures) -> Iterator[Polyline]:
     way = cmath.exp(0.25j * cmath.pi)
     for disc in pose.skeleton.of(DiscFigure):
         centre = pose.points[disc.center]
-        yield Polyline(
-            role=Role.DIMENSION,
-            of=disc.link,
-            points=(xy(centre), xy(centre + disc.radius * way)),
-            head=min(_HEAD * measures.head, 0.4 * disc.radius),
-        )
+        head = min(_HEAD * measures.head, 0.4 * disc.radius)
+        ends = (centre, centre + disc.radius * way)
+        yield drawn_line(Role.DIMENSION, disc.link, ends, head=head)
 
 
 def _angle(
@@ -162,26 +159,13 @@ def _angle(
     sweep = math.fmod(value, math.tau)
     radius = min(_ARC * measures.pin, 0.75 * abs(reach))
     least = 2.5 * measures.pin / radius
-    drawn: list[Primitive] = [
-        Polyline(
-            role=Role.EXTENSION,
-            of=part.name,
-            points=(xy(centre), xy(centre + 1.3 * radius * cmath.exp(1j * (here - sweep)))),
-        )
-    ]
+    start = (centre, centre + 1.3 * radius * cmath.exp(1j * (here - sweep)))
+    drawn: list[Primitive] = [drawn_line(Role.EXTENSION, part.name, start)]
     # an arc shorter than its arrow head is left out
     if abs(sweep) > least:
-        drawn.append(
-            Arc(
-                role=Role.DIMENSION,
-                of=part.name,
-                centre=xy(centre),
-                radius=radius,
-                start=here - sweep,
-                sweep=sweep,
-                head=_HEAD * measures.head,
-            )
-        )
+        head = _HEAD * measures.head
+        arc = drawn_arc(Role.DIMENSION, part.name, centre, radius, here - sweep, sweep, head)
+        drawn.append(arc)
     wide = math.copysign(max(abs(sweep), _NARROW), sweep)
     spots = [
         (
@@ -231,35 +215,23 @@ def _line(
     half_height = 0.6 * height
     room = min(half_width / max(abs(along.real), 1e-9), half_height / max(abs(along.imag), 1e-9))
     head = min(_HEAD * measures.head, 0.35 * length)
-    drawn: list[Primitive] = [
-        Polyline(
-            role=Role.EXTENSION,
-            of=span.of,
-            points=(xy(z + 1.3 * measures.pin * out), xy(z + away + 0.7 * measures.pin * out)),
-        )
-        for z in (span.start, span.end)
-    ]
+    drawn: list[Primitive] = []
+    for z in (span.start, span.end):
+        ends = (z + 1.3 * measures.pin * out, z + away + 0.7 * measures.pin * out)
+        drawn.append(drawn_line(Role.EXTENSION, span.of, ends))
     middle = start + share * (end - start)
     # a number in the line needs space for itself and both arrow heads
     fits = min(share, 1.0 - share) * length > room + 1.5 * head
     for tail, tip in ((middle - room * along, start), (middle + room * along, end)):
-        inner = tail if fits else middle
-        drawn.append(
-            Polyline(role=Role.DIMENSION, of=span.of, points=(xy(inner), xy(tip)), head=head)
-        )
+        ends = (tail if fits else middle, tip)
+        drawn.append(drawn_line(Role.DIMENSION, span.of, ends, head=head))
     boxes = _boxes(start, end, measures)
     if not fits:
         line = (start, end)
         text = places_along(Role.DIMENSION_NAME, span.of, span.text, line, 0, measures)
         return drawn, [text], boxes
-    written = Text(
-        role=Role.DIMENSION_NAME,
-        of=span.of,
-        text=span.text,
-        anchor=xy(middle),
-        offset=(0.0, -0.3 * height),
-        height=height,
-    )
+    below = (0.0, -0.3 * height)
+    written = drawn_text(Role.DIMENSION_NAME, span.of, span.text, middle, below, height)
     return [*drawn, written], [], [*boxes, written.box.grown(0.1 * height)]
 
 

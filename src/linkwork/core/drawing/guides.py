@@ -10,7 +10,7 @@ import numpy as np
 
 from linkwork.core.drawing.links import Gap, couplings, hatching, stems, uncovered
 from linkwork.core.drawing.pose import Pose, travel_along
-from linkwork.core.drawing.scene import Measures, Polygon, Polyline, Primitive, Role, xy
+from linkwork.core.drawing.scene import Measures, Polyline, Primitive, Role, drawn_area, drawn_line
 from linkwork.core.foundation.names import GROUND
 from linkwork.core.mechanism.bodies import Guide
 from linkwork.core.mechanism.part.guides import GenevaWheel
@@ -41,8 +41,8 @@ class Track:
     name: str
     on: str
     tone: int
-    block: bool
-    fixed: bool
+    block: bool = True
+    fixed: bool = False
     along: complex
     away: complex
     start: complex
@@ -76,8 +76,6 @@ def _on_link(pose: Pose, rail: Rail, line: tuple[str, str], tone_of: Mapping[str
         name=rail.name,
         on=rail.on,
         tone=tone_of.get(rail.on, 1),
-        block=True,
-        fixed=False,
         along=along,
         away=along * -1j,
         start=foot + travel.low * along,
@@ -100,7 +98,6 @@ def _rail_track(pose: Pose, measures: Measures, rail: Rail, tone_of: Mapping[str
         name=rail.name,
         on=GROUND,
         tone=1,
-        block=True,
         fixed=True,
         along=rail.along,
         away=_rail_side(pose, rail.points, rail.along, measures),
@@ -217,7 +214,7 @@ def _blocks(track: Track, measures: Measures) -> Iterator[Primitive]:
     along, across = half * track.along, height * track.along * 1j
     for z in track.places:
         corners = (z - along - across, z + along - across, z + along + across, z - along + across)
-        yield Polygon(role=Role.SLIDER, of=track.name, points=tuple(map(xy, corners)))
+        yield drawn_area(Role.SLIDER, track.name, corners)
 
 
 def _rail(track: Track, measures: Measures) -> Iterator[Primitive]:
@@ -225,7 +222,7 @@ def _rail(track: Track, measures: Measures) -> Iterator[Primitive]:
     half, height = measures.block
     reach, down = 1.6 * half * track.along, height * track.away
     start, end = track.start - reach + down, track.end + reach + down
-    yield Polyline(role=Role.GROUND, of=track.name, points=(xy(start), xy(end)))
+    yield drawn_line(Role.GROUND, track.name, (start, end))
     yield hatching(start, end, track.away, measures.hatch, track.name)
 
 
@@ -245,8 +242,7 @@ def _rod(track: Track, measures: Measures) -> Iterator[Primitive]:
 
 
 def _bar(track: Track, start: complex, end: complex) -> Polyline:
-    ends = (xy(start), xy(end))
-    return Polyline(role=Role.LINK, of=track.on, tone=track.tone, points=ends)
+    return drawn_line(Role.LINK, track.on, (start, end), track.tone)
 
 
 def _slot_end(measures: Measures) -> float:
@@ -263,13 +259,12 @@ def _slot(track: Track, measures: Measures) -> Iterator[Primitive]:
     start, end = track.start - over, track.end + over
     turn = [width * cmath.exp(1j * cmath.pi * (k / 10 - 0.5)) * track.along for k in range(11)]
     outline = [end + w for w in turn] + [start - w for w in turn]
-    corners = tuple(map(xy, outline))
     if track.fixed:
-        yield Polyline(role=Role.GROUND, of=track.name, points=corners + corners[:1])
+        yield drawn_line(Role.GROUND, track.name, [*outline, outline[0]])
         down = width * track.away
         yield hatching(start + down, end + down, track.away, measures.hatch, track.name)
         return
-    yield Polygon(role=Role.SLOT, of=track.name, tone=track.tone, points=corners)
+    yield drawn_area(Role.SLOT, track.name, outline, track.tone)
     # If all points of the link are off the slot, connect the link to it.
     length, low, high = (
         ((z - track.foot) * track.along.conjugate()).real

@@ -18,7 +18,16 @@ from linkwork.core.drawing.guides import Track
 from linkwork.core.drawing.labels import Kept, Obstacles
 from linkwork.core.drawing.links import convex_outline, in_line
 from linkwork.core.drawing.pose import Pose
-from linkwork.core.drawing.scene import Arc, Box, Measures, Polyline, Primitive, Role, xy
+from linkwork.core.drawing.scene import (
+    Arc,
+    Box,
+    Measures,
+    Polyline,
+    Primitive,
+    Role,
+    drawn_arc,
+    drawn_line,
+)
 from linkwork.core.drawing.wheels import outer_radius
 from linkwork.core.foundation.lanes import phase
 from linkwork.core.mechanism.bodies import DiscFigure
@@ -131,9 +140,7 @@ def _along_strut(pose: Pose, strut: Strut, measures: Measures, turn: int) -> Ite
 
 def _straight(of: str, middle: complex, along: complex, measures: Measures) -> Polyline:
     reach = 3.6 * measures.pin * along
-    return Polyline(
-        role=Role.INPUT, of=of, points=(xy(middle - reach), xy(middle + reach)), head=measures.head
-    )
+    return drawn_line(Role.INPUT, of, (middle - reach, middle + reach), head=measures.head)
 
 
 def _around_pivot(
@@ -156,15 +163,8 @@ def _around_pivot(
     for away, wider in product(turns, _AROUND_PLATE if plate else _WIDER):
         own = wider * radius
         sweep = turn * min(_SWEEP, _LONGEST * measures.pin / own)
-        arrow = Arc(
-            role=Role.INPUT,
-            of=part.name,
-            centre=xy(pivot),
-            radius=own,
-            start=usual + away - sweep / 2,
-            sweep=sweep,
-            head=measures.head,
-        )
+        start = usual + away - sweep / 2
+        arrow = drawn_arc(Role.INPUT, part.name, pivot, own, start, sweep, measures.head)
         cost = _TURNED * abs(math.remainder(away, math.tau)) + _WIDENED * (wider - 1.0)
         yield _Place(arrow, cost)
 

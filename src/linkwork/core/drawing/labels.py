@@ -24,6 +24,7 @@ from linkwork.core.drawing.scene import (
     Primitive,
     Role,
     Text,
+    drawn_text,
     text_width,
     xy,
 )
@@ -240,18 +241,9 @@ def places_beside(
             # descenders and ascenders of a printed line, as in the box of a text
             below, above = 0.16 * height, 0.76 * height
             rise = below if sin > 0 else -above if sin < 0 else -(above - below) / 2
-            places.append(
-                Text(
-                    role=role,
-                    of=of,
-                    tone=tone,
-                    text=text,
-                    anchor=xy(place),
-                    offset=(gap * cos, gap * sin + rise),
-                    height=height,
-                    align=-1 if cos > 0 else 1 if cos < 0 else 0,
-                )
-            )
+            offset = (gap * cos, gap * sin + rise)
+            align = -1 if cos > 0 else 1 if cos < 0 else 0
+            places.append(drawn_text(role, of, text, place, offset, height, tone, align))
             cost.append(preference + further * _FURTHER)
     return Choice(tuple(places), tuple(cost))
 
@@ -318,18 +310,8 @@ def places_at(
     role: Role, of: str, text: str, tone: int, height: float, spots: Sequence[tuple[complex, float]]
 ) -> Choice:
     """Positions for a text with its middle at given points, each with its penalty."""
-    places = tuple(
-        Text(
-            role=role,
-            of=of,
-            tone=tone,
-            text=text,
-            anchor=xy(spot),
-            offset=(0.0, -0.3 * height),
-            height=height,
-        )
-        for spot, _ in spots
-    )
+    below = (0.0, -0.3 * height)
+    places = tuple(drawn_text(role, of, text, spot, below, height, tone) for spot, _ in spots)
     return Choice(places, tuple(cost for _, cost in spots))
 
 

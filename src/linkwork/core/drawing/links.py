@@ -15,14 +15,14 @@ import numpy as np
 from linkwork.core.drawing.pose import Pose
 from linkwork.core.drawing.scene import (
     COINCIDENT,
-    Disc,
-    Disc as Circle,
     Hatch,
     Measures,
-    Polygon,
     Polyline,
     Primitive,
     Role,
+    drawn_area,
+    drawn_disc,
+    drawn_line,
     xy,
 )
 from linkwork.core.foundation.arrays import ComplexArray
@@ -94,24 +94,20 @@ def coupling_symbols(
         reach = max([0.4 * min(sizes), *(abs(pose.points[name] - middle) for name in own)])
         for (guide, name), radius in zip(coupling.discs, sizes, strict=True):
             centre, number = pose.points[name], tone.get(guide.on, 1)
-            yield Circle(
-                role=Role.WHEEL, of=guide.on, tone=number, centre=xy(centre), radius=radius
-            )
+            yield drawn_disc(Role.WHEEL, guide.on, centre, radius, number)
         for (guide, name), radius in zip(coupling.discs, sizes, strict=True):
             along = pose.direction(guide)
             groove = _bar(pose.points[name], along, (radius**2 - half**2) ** 0.5, half)
-            yield Polygon(role=Role.SLOT, of=guide.name, tone=tone.get(guide.on, 1), points=groove)
+            yield drawn_area(Role.SLOT, guide.name, groove, tone.get(guide.on, 1))
         for guide, _ in coupling.discs:
             tongue = _bar(middle, pose.direction(guide), reach, 0.8 * half)
-            yield Polygon(role=Role.SLIDER, of=coupling.cross, points=tongue)
+            yield drawn_area(Role.SLIDER, coupling.cross, tongue)
 
 
-def _bar(
-    middle: complex, along: complex, reach: float, half: float
-) -> tuple[tuple[float, float], ...]:
+def _bar(middle: complex, along: complex, reach: float, half: float) -> list[complex]:
     """A rectangle about its middle."""
     ends = (-reach - 1j * half, reach - 1j * half, reach + 1j * half, -reach + 1j * half)
-    return tuple(xy(middle + along * end) for end in ends)
+    return [middle + along * end for end in ends]
 
 
 # ----------------------------------------------------------------------
@@ -147,9 +143,9 @@ def _link(pose: Pose, bar: Bar, tone: int, gaps: list[Gap]) -> Iterator[Primitiv
     outline = convex_outline(points)
     if in_line(outline):
         for start, end in uncovered(outline[0], outline[-1], gaps):
-            yield Polyline(role=Role.LINK, of=bar.name, tone=tone, points=(xy(start), xy(end)))
+            yield drawn_line(Role.LINK, bar.name, (start, end), tone)
     else:
-        yield Polygon(role=Role.PLATE, of=bar.name, tone=tone, points=tuple(map(xy, outline)))
+        yield drawn_area(Role.PLATE, bar.name, outline, tone)
 
 
 def pin_radius(pose: Pose, name: str, measures: Measures) -> float:
@@ -170,10 +166,10 @@ def pin_symbols(pose: Pose, measures: Measures) -> Iterator[Primitive]:
             continue
         if name in joined:
             radius = pin_radius(pose, name, measures)
-            yield Disc(role=Role.PIN, of=name, centre=xy(place), radius=radius)
+            yield drawn_disc(Role.PIN, name, place, radius)
         else:
             role = Role.TRACED if name in skeleton.traced else Role.POINT
-            yield Disc(role=role, of=name, centre=xy(place), radius=measures.dot)
+            yield drawn_disc(role, name, place, measures.dot)
 
 
 def convex_outline(points: Iterable[complex]) -> list[complex]:
@@ -261,9 +257,9 @@ def ground_symbols(pose: Pose, measures: Measures) -> Iterator[Primitive]:
 def _pivot(name: str, place: complex, measures: Measures) -> Iterator[Primitive]:
     half, floor, depth = 1.9 * measures.pin, 2.9 * measures.pin, _FLOOR * measures.pin
     left, right = place - half - 1j * depth, place + half - 1j * depth
-    yield Polygon(role=Role.GROUND, of=name, points=(xy(place), xy(left), xy(right)))
+    yield drawn_area(Role.GROUND, name, (place, left, right))
     start, end = place - floor - 1j * depth, place + floor - 1j * depth
-    yield Polyline(role=Role.GROUND, of=name, points=(xy(start), xy(end)))
+    yield drawn_line(Role.GROUND, name, (start, end))
     yield hatching(start, end, -1j, measures.hatch, name)
 
 
@@ -305,8 +301,8 @@ def contour_mark(pose: Pose, contour: Contour, tone: int, measures: Measures) ->
     way = np.exp(1j * pose.angle(contour.link))
     centre = pose.points[contour.center]
     reach = 0.7 * float(np.abs(np.array(contour.points)).min())
-    ends = (xy(centre + min(measures.pin, 0.5 * reach) * way), xy(centre + reach * way))
-    return Polyline(role=Role.MARK, of=contour.link, tone=tone, points=ends)
+    ends = (centre + min(measures.pin, 0.5 * reach) * way, centre + reach * way)
+    return drawn_line(Role.MARK, contour.link, ends, tone)
 
 
 # ----------------------------------------------------------------------

@@ -26,6 +26,7 @@ from linkwork.core.drawing.scene import (
     Scene,
     Text,
     Theme,
+    round_down,
 )
 
 if TYPE_CHECKING:
@@ -38,12 +39,7 @@ FORMATS = ("png", "svg", "pdf")
 
 _LONG_SIDE = 6.0  # longer side of the drawing [inches]
 _SHORT_SIDE = 2.2  # minimum, so that a flat mechanism has room, ticks and a title
-_LEFT, _RIGHT, _BELOW, _LINE = (
-    0.75,
-    0.2,
-    0.6,
-    0.19,
-)  # margins and title line [inches]
+_LEFT, _RIGHT, _BELOW, _LINE = 0.75, 0.2, 0.6, 0.19  # margins and title line [inches]
 _TITLE, _SMALL = 11.0, 9.0  # font sizes in points
 _TICK_EVERY = 1.0  # approximate distance [inches]
 _MARGIN, _BETWEEN = 0.15, 0.15  # margins of pictures side by side [inches]
@@ -89,9 +85,7 @@ def figure(scene: Scene, ax: Axes | None = None, *, theme: Theme = LIGHT) -> Fig
         else:
             _dress(ax, scene, theme, scene.box.grown(0.03 * scene.measures.size))
             ax.set_title("\n".join(filter(None, (scene.title, scene.caption))), fontsize=_TITLE)
-        brush = Brush(ax, scene, theme)
-        for primitive in scene.primitives:
-            brush.draw(primitive)
+        Brush(ax, scene, theme).draw_all(scene)
         found = ax.get_figure(root=True)
     assert found is not None
     return found
@@ -99,9 +93,6 @@ def figure(scene: Scene, ax: Axes | None = None, *, theme: Theme = LIGHT) -> Fig
 
 def _sheet_figure(sheet: Sheet, theme: Theme) -> Figure:
     """Scenes side by side in frames without ticks, with equal scale."""
-    from matplotlib.backends.backend_agg import FigureCanvasAgg
-    from matplotlib.figure import Figure
-
     columns, cell = sheet.columns, sheet.cell
     rows = math.ceil(len(sheet.scenes) / columns)
     wide = cell - _BETWEEN
@@ -110,15 +101,13 @@ def _sheet_figure(sheet: Sheet, theme: Theme) -> Figure:
     view = sheet.view.grown(0.03 * size)
     tall = min(max(wide * view.height / view.width, 0.35 * wide), TALLEST * wide)
     scale = max(view.width / wide, view.height / tall)
-    (x, y), half, rise = view.centre, 0.5 * scale * wide, 0.5 * scale * tall
-    view = Box(x - half, y - rise, x + half, y + rise)
+    view = view.sized(scale * wide, scale * tall)
     width = columns * cell + 2 * _MARGIN - _BETWEEN
     heading = _heading(sheet.title, sheet.caption, width - 2 * _MARGIN, theme)
     above = _MARGIN + _LINE * len(heading)
     step = tall + _BETWEEN + _LINE * max(map(len, names))
     height = above + rows * step + _MARGIN
-    page = Figure(figsize=(width, height), facecolor=theme.background)
-    FigureCanvasAgg(page)
+    page = _blank(width, height, theme)
     _write_heading(page, heading, _MARGIN)
     for k, (scene, name) in enumerate(zip(sheet.scenes, names, strict=True)):
         row, column = divmod(k, columns)
@@ -131,9 +120,17 @@ def _sheet_figure(sheet: Sheet, theme: Theme) -> Figure:
             spine.set_visible(True)
         text = "\n".join(name)
         ax.set_title(text, fontsize=_SMALL, color=theme.ink, loc="left", pad=4.0, parse_math=False)
-        brush = Brush(ax, scene, theme)
-        for primitive in scene.primitives:
-            brush.draw(primitive)
+        Brush(ax, scene, theme).draw_all(scene)
+    return page
+
+
+def _blank(width: float, height: float, theme: Theme) -> Figure:
+    """An empty page [inches]."""
+    from matplotlib.backends.backend_agg import FigureCanvasAgg
+    from matplotlib.figure import Figure
+
+    page = Figure(figsize=(width, height), facecolor=theme.background)
+    FigureCanvasAgg(page)
     return page
 
 
@@ -160,22 +157,16 @@ def _write_heading(page: Figure, heading: list[tuple[str, float, str]], left: fl
 
 def _page(scene: Scene, theme: Theme) -> Axes:
     """Create axes on a page sized for the drawing, its margins and its title."""
-    from matplotlib.backends.backend_agg import FigureCanvasAgg
-    from matplotlib.figure import Figure
-
     view = scene.box.grown(0.03 * scene.measures.size)
     scale = _LONG_SIDE / max(view.width, view.height)
     width, height = (max(_SHORT_SIDE, scale * side) for side in (view.width, view.height))
-    x, y = view.centre
-    half, rise = width / scale / 2, height / scale / 2
-    view = Box(x - half, y - rise, x + half, y + rise)
+    view = view.sized(width / scale, height / scale)
     page = width + _LEFT + _RIGHT
     left = _LEFT if page > 4 else 0.2
     heading = _heading(scene.title, scene.caption, page - left - 0.2, theme)
     above = 0.2 + _LINE * len(heading)
     total = height + _BELOW + above
-    drawing = Figure(figsize=(page, total), facecolor=theme.background)
-    FigureCanvasAgg(drawing)
+    drawing = _blank(page, total, theme)
     ax = drawing.add_axes((_LEFT / page, _BELOW / total, width / page, height / total))
     _dress(ax, scene, theme, view)
     _write_heading(drawing, heading, left)
@@ -193,7 +184,7 @@ def _dress(ax: Axes, scene: Scene, theme: Theme, view: Box) -> None:
     ax.apply_aspect()
     scale = _points_per_unit(ax)
     short = min(view.width, view.height) * scale / 72
-    spacing = _round_step(min(_TICK_EVERY, max(0.5 * short, 0.5)) * 72 / scale)
+    spacing = round_down(1.4 * min(_TICK_EVERY, max(0.5 * short, 0.5)) * 72 / scale, (1, 2, 5))
     for axis, name in ((ax.xaxis, "x"), (ax.yaxis, "y")):
         axis.set_major_formatter(lambda value, _: f"{value:.6g}".replace("-", "\u2212"))
         axis.set_major_locator(MultipleLocator(spacing))
@@ -218,12 +209,6 @@ def _points_per_unit(ax: Axes) -> float:
     return float(right - left) * 72 / root.dpi
 
 
-def _round_step(wanted: float) -> float:
-    """The largest of 1, 2, 5 times a power of ten up to 1.4 times ``wanted``."""
-    power: float = 10.0 ** math.floor(math.log10(1.4 * wanted))
-    return max(step * power for step in (1, 2, 5) if step * power <= 1.4 * wanted)
-
-
 class Brush:
     """Translates primitives into artists of axes."""
 
@@ -232,6 +217,10 @@ class Brush:
         self.theme = theme
         self.points = _points_per_unit(ax)
         self.stroke = scene.measures.stroke * self.points
+
+    def draw_all(self, scene: Scene) -> None:
+        for primitive in scene.primitives:
+            self.draw(primitive)
 
     def draw(self, primitive: Primitive) -> None:
         match primitive:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
+from functools import reduce
 from itertools import chain
 from typing import TYPE_CHECKING
 
@@ -42,6 +43,7 @@ from linkwork.core.foundation.names import GROUND, as_names
 from linkwork.core.foundation.values import given_or
 from linkwork.core.mechanism.bodies import Contour, DiscFigure
 from linkwork.core.mechanism.part.guides import GenevaWheel
+from linkwork.core.mechanism.part.rolling import RollingLine
 from linkwork.core.results.motion import Motion
 from linkwork.core.results.position import Position
 
@@ -58,7 +60,7 @@ def drawn_box(pose: Pose, traces: tuple[str, ...], others: Sequence[Pose]) -> Bo
     places = (one.points[name] for one in poses for name in drawn)
     along = {guide.point for guide in pose.skeleton.guides if pose.on_ground(guide)}
     along |= {point for rail in pose.skeleton.rails for point in rail.points}
-    along |= {point for figure in pose.skeleton.figures for point in figure.travelling}
+    along |= {track.center for track in pose.skeleton.of(RollingLine)}
     paths = [pose.paths[name] for name in (*traces, *along) if name in pose.paths]
     travelled = chain.from_iterable(path[np.isfinite(path)] for path in paths)
     rounds = chain.from_iterable(map(_round_parts, poses))
@@ -75,8 +77,8 @@ def drawn_box(pose: Pose, traces: tuple[str, ...], others: Sequence[Pose]) -> Bo
 def _round_parts(pose: Pose) -> Iterator[complex]:
     """Outermost points of wheels, cams and curves, and of rolling lines without a motion."""
     if not pose.paths:
-        for figure in pose.skeleton.figures:
-            yield from (pose.points[name] for name in figure.extent)
+        for track in pose.skeleton.of(RollingLine):
+            yield from (pose.points[name] for name in track.line)
     for center, radius in _discs(pose):
         yield from (pose.points[center] + radius * 1j**k for k in range(4))
     for contour in pose.skeleton.of(Contour):
@@ -337,20 +339,17 @@ class Sheet:
     @property
     def columns(self) -> int:
         """The number of scenes in a row."""
-        return _columns(len(self.scenes))
+        return max(1, min(4, math.ceil(math.sqrt(len(self.scenes)))))
 
     @property
     def cell(self) -> float:
         """The width of a scene including its margin [inches]."""
-        return _cell(len(self.scenes))
+        return max(_SMALLEST_CELL, _WIDTH / self.columns)
 
     @property
     def view(self) -> Box:
         """The part of the plane shown by every scene."""
-        box = self.scenes[0].box
-        for scene in self.scenes[1:]:
-            box = box.with_box(scene.box)
-        return box
+        return reduce(Box.with_box, (scene.box for scene in self.scenes))
 
 
 def configuration_sheet(found: Configurations) -> Sheet:
@@ -363,41 +362,23 @@ def configuration_sheet(found: Configurations) -> Sheet:
     """
     if not len(found):
         raise InputError(f'"{found.mechanism}" has no configuration to draw: {found.message}')
-    within, *others = (scene_of(position).within for position in found)
-    for other in others:
-        # the same frame for all, so that sizes are comparable
-        within = within.with_box(other)
-    printed = _printed(within, _cell(len(found)))
-    larger = min(max(_USUAL / printed, min(_WHOLE / printed, 1.0)), _LARGEST)
-    scenes = [
-        replace(
-            scene_of(
-                position,
-                options=SceneOptions(title=position.configuration, within=within, larger=larger),
-            ),
-            caption="",
-        )
-        for position in found
-    ]
-    count = len(scenes)
+    count = len(found)
     where = inputs_caption(found.input, found.input_units, found.positions[0].units)
     what = f"{count} configuration{'' if count == 1 else 's'}"
-    return Sheet(
-        title=found.mechanism,
-        caption=f"{what} at {where}" if where else what,
-        scenes=tuple(scenes),
-    )
+    caption = f"{what} at {where}" if where else what
+    sheet = Sheet(title=found.mechanism, caption=caption, scenes=tuple(map(scene_of, found)))
+    # the same frame for all, so that sizes are comparable
+    within = reduce(Box.with_box, (scene.within for scene in sheet.scenes))
+    printed = _printed(within, sheet.cell)
+    larger = min(max(_USUAL / printed, min(_WHOLE / printed, 1.0)), _LARGEST)
+    scenes = []
+    for position in found:
+        options = SceneOptions(title=position.configuration, within=within, larger=larger)
+        scenes.append(replace(scene_of(position, options=options), caption=""))
+    return replace(sheet, scenes=tuple(scenes))
 
 
 def _printed(box: Box, cell: float) -> float:
     """The longer side of a box that fills a cell [inches]."""
     width, height = max(box.width, 1e-9), max(box.height, 1e-9)
     return max(width, height) * min(cell / width, TALLEST * cell / height)
-
-
-def _columns(count: int) -> int:
-    return max(1, min(4, math.ceil(math.sqrt(count))))
-
-
-def _cell(count: int) -> float:
-    return max(_SMALLEST_CELL, _WIDTH / _columns(count))

@@ -11,7 +11,7 @@ import numpy as np
 
 from linkwork.core.drawing.links import hatching, pin_radius, tones
 from linkwork.core.drawing.pose import Pose, Travel, travel_along
-from linkwork.core.drawing.scene import Arc, Measures, Polygon, Polyline, Primitive, Role, xy
+from linkwork.core.drawing.scene import Measures, Primitive, Role, drawn_arc, drawn_area, drawn_line
 from linkwork.core.drawing.wheels import addendum_of
 from linkwork.core.foundation.arrays import ComplexArray
 from linkwork.core.foundation.lanes import phase
@@ -61,25 +61,11 @@ def belt_symbols(belt: BeltRun, pose: Pose, measures: Measures) -> Iterator[Prim
     beta = math.acos((first - second) / abs(other - one))
     for side in (1, -1):
         way = cmath.exp(1j * (along + side * beta))
-        ends = (xy(one + first * way), xy(other + second * way))
-        yield Polyline(role=Role.BELT, of=belt.name, points=ends)
+        yield drawn_line(Role.BELT, belt.name, (one + first * way, other + second * way))
     around = math.tau - 2 * beta
-    yield Arc(
-        role=Role.BELT,
-        of=belt.name,
-        centre=xy(one),
-        radius=first,
-        start=along + beta,
-        sweep=around,
-    )
-    yield Arc(
-        role=Role.BELT,
-        of=belt.name,
-        centre=xy(other),
-        radius=abs(second),
-        start=along - (around / 2 if belt.crossed else beta),
-        sweep=around if belt.crossed else 2 * beta,
-    )
+    start, sweep = (along - around / 2, around) if belt.crossed else (along - beta, 2 * beta)
+    yield drawn_arc(Role.BELT, belt.name, one, first, along + beta, around)
+    yield drawn_arc(Role.BELT, belt.name, other, abs(second), start, sweep)
 
 
 # ----------------------------------------------------------------------
@@ -105,14 +91,10 @@ def cylinder_symbols(strut: Strut, pose: Pose, measures: Measures) -> Iterator[P
     back, front = base + foot * along, base + mouth * along
     wall = (back - across, front - across, front + across, back + across)
 
-    def line(start: complex, end: complex) -> Polyline:
-        ends = (xy(start), xy(end))
-        return Polyline(role=Role.LINK, of=strut.name, tone=tone, points=ends)
-
-    yield Polygon(role=Role.CYLINDER, of=strut.name, tone=tone, points=tuple(map(xy, wall)))
-    yield line(base, back)
-    yield line(piston, tip)
-    yield line(piston - 0.8 * across, piston + 0.8 * across)
+    yield drawn_area(Role.CYLINDER, strut.name, wall, tone)
+    head = (piston - 0.8 * across, piston + 0.8 * across)
+    for ends in ((base, back), (piston, tip), head):
+        yield drawn_line(Role.LINK, strut.name, ends, tone)
 
 
 def _barrel_end(length: Travel) -> float:
@@ -151,11 +133,10 @@ def rack_symbols(rack: RackBar, pose: Pose, measures: Measures) -> Iterator[Prim
     beyond = addendum_of(rack.radius, measures)
     low, high = pitch - side * 1.5 * beyond, pitch + side * beyond
     corners = [complex(start, low), complex(end, low), complex(end, high), complex(start, high)]
-    tone = tones(pose)[rack.link]
-    points = tuple(xy(foot + corner * along) for corner in corners)
-    yield Polygon(role=Role.WHEEL, of=rack.link, tone=tone, points=points)
-    ends = (xy(foot + complex(x, pitch) * along) for x in (start, end))
-    yield Polyline(role=Role.PITCH, of=rack.name, points=tuple(ends))
+    bar = (foot + corner * along for corner in corners)
+    yield drawn_area(Role.WHEEL, rack.link, bar, tones(pose)[rack.link])
+    ends = (foot + complex(x, pitch) * along for x in (start, end))
+    yield drawn_line(Role.PITCH, rack.name, ends)
 
 
 # ----------------------------------------------------------------------
@@ -174,14 +155,12 @@ def rolling_symbols(track: RollingLine, pose: Pose, measures: Measures) -> Itera
     if not pose.paths:
         low, high = min(low, 0.0), max(high, abs(tip - foot))
     start, end = foot + low * along, foot + high * along
-    ends = (xy(start), xy(end))
     if track.on == GROUND:
-        yield Polyline(role=Role.GROUND, of=track.name, points=ends)
+        yield drawn_line(Role.GROUND, track.name, (start, end))
         away = -1j * along * np.sign(center.imag)
         yield hatching(start, end, complex(away), measures.hatch, track.name)
     else:
-        tone = tones(pose)[track.on]
-        yield Polyline(role=Role.LINK, of=track.on, tone=tone, points=ends)
+        yield drawn_line(Role.LINK, track.on, (start, end), tones(pose)[track.on])
 
 
 # ----------------------------------------------------------------------
@@ -207,13 +186,13 @@ def slot_symbols(wheel: GenevaWheel, pose: Pose, measures: Measures) -> Iterator
         lock, distance = _LOCK * abs(pin - middle), abs(middle - centre)
         depth = distance - abs(pin - middle)
     star = _star(wheel.count, radius, depth, lock, distance, measures)
-    corners = tuple(map(xy, centre + along / radius * star))
-    yield Polygon(role=Role.WHEEL, of=wheel.link, tone=tone.get(wheel.link, 0), points=corners)
+    corners = centre + along / radius * star
+    yield drawn_area(Role.WHEEL, wheel.link, corners, tone.get(wheel.link, 0))
     if driver is not None:
         room = 0.3 * measures.pin
         disc = _cut_disc(lock - room, radius + room, distance)
-        corners = tuple(map(xy, middle + (pin - middle) / abs(pin - middle) * disc))
-        yield Polygon(role=Role.WHEEL, of=driver[0], tone=tone.get(driver[0], 0), points=corners)
+        corners = middle + (pin - middle) / abs(pin - middle) * disc
+        yield drawn_area(Role.WHEEL, driver[0], corners, tone.get(driver[0], 0))
 
 
 def rounds(wheel: GenevaWheel, pose: Pose) -> Iterator[tuple[str, float]]:
@@ -308,7 +287,7 @@ def spring_symbols(spring: SpringFigure, pose: Pose, measures: Measures) -> Iter
         side = across if k % 2 == 0 else -across
         corners.append(start + (first + (k + 0.5) * pitch) * along + side)
     corners += [end - first * along, end]
-    yield Polyline(role=Role.SPRING, of=spring.name, points=tuple(map(xy, corners)))
+    yield drawn_line(Role.SPRING, spring.name, corners)
 
 
 # ----------------------------------------------------------------------
@@ -336,8 +315,7 @@ def weld_symbols(joint: RigidJoint, pose: Pose, measures: Measures) -> Iterator[
         place + radius * middle * cmath.exp(1j * half * (2.0 * k / _PIECES - 1.0))
         for k in range(_PIECES + 1)
     ]
-    corners = tuple(map(xy, [place, *arc]))
-    yield Polygon(role=Role.WELD, of=" ".join(joint.links), points=corners)
+    yield drawn_area(Role.WELD, " ".join(joint.links), [place, *arc])
 
 
 def _direction(pose: Pose, link: str, carried: tuple[str, ...], point: str) -> complex:

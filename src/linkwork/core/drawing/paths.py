@@ -5,6 +5,7 @@ from __future__ import annotations
 import cmath
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
+from functools import partial
 from itertools import pairwise
 
 import numpy as np
@@ -18,14 +19,15 @@ from linkwork.core.drawing.pose import Path, Pose, lead_text, printed_name
 from linkwork.core.drawing.scene import (
     COINCIDENT,
     Box,
-    Disc,
     Hatch,
     Measures,
     Polygon,
-    Polyline,
     Primitive,
     Role,
-    Text,
+    drawn_area,
+    drawn_disc,
+    drawn_line,
+    drawn_text,
     xy,
 )
 from linkwork.core.drawing.wheels import wheel_symbols
@@ -165,9 +167,9 @@ def trace_symbols(pose: Pose, names: tuple[str, ...], measures: Measures) -> Ite
         path = smoothed(pose.paths[name], UNSEEN * measures.size, *pose.rates[name])
         for run in drawn_once(thinned(path, width), width):
             if len(run) > 1:
-                yield Polyline(role=Role.TRACE, of=name, points=tuple(map(xy, run)))
+                yield drawn_line(Role.TRACE, name, run)
             else:
-                yield Disc(role=Role.TRACE, of=name, centre=xy(run[0]), radius=0.4 * measures.dot)
+                yield drawn_disc(Role.TRACE, name, run[0], 0.4 * measures.dot)
 
 
 def thinned(path: Path, width: float) -> Path:
@@ -279,15 +281,13 @@ def _pieces(name: str, pose: Pose, share: Array, unseen: float) -> list[Primitiv
     key = np.where(there, levels, -1)
     edges = [0, *(np.flatnonzero(np.diff(key)) + 1).tolist(), len(key)]
     runs = [(slice(a, b + 1), key[a]) for a, b in pairwise(edges) if b > a and key[a] >= 0]
-    return [
-        Polyline(
-            role=Role.SPEED_TRACE,
-            of=name,
-            level=(int(level) + 0.5) / _CLASSES,
-            points=tuple(map(xy, smoothed(path[run], unseen, first[run], second[run]))),
+    drawn: list[Primitive] = []
+    for run, level in runs:
+        line = drawn_line(
+            Role.SPEED_TRACE, name, smoothed(path[run], unseen, first[run], second[run])
         )
-        for run, level in runs
-    ]
+        drawn.append(replace(line, level=(int(level) + 0.5) / _CLASSES))
+    return drawn
 
 
 def colour_scale(
@@ -299,20 +299,12 @@ def colour_scale(
     top = below.bottom - 1.2 * measures.text
     bottom = top - height
     step = length / _CLASSES
-    bar: list[Primitive] = [
-        Polygon(
-            role=Role.SCALE,
-            of="speed",
-            level=(k + 0.5) / _CLASSES,
-            points=(
-                (left + k * step, bottom),
-                (left + (k + 1) * step, bottom),
-                (left + (k + 1) * step, top),
-                (left + k * step, top),
-            ),
-        )
-        for k in range(_CLASSES)
-    ]
+    bar: list[Primitive] = []
+    for k in range(_CLASSES):
+        here, there = left + k * step, left + (k + 1) * step
+        corners = ((here, bottom), (there, bottom), (there, top), (here, top))
+        level = (k + 0.5) / _CLASSES
+        bar.append(Polygon(role=Role.SCALE, of="speed", level=level, points=corners))
     rate = rate_of(1, motion.speed is not None)
     unit = rate.unit(Kind.LENGTH, motion.units, motion.derivative_unit)
     mark = "\u2265 " if more else ""
@@ -320,23 +312,10 @@ def colour_scale(
     said += ", ".join(map(printed_name, names))
     size = 0.8 * measures.text
     base = bottom + 0.5 * height - 0.3 * size
-    texts = [
-        _text("0", (left - 0.4 * size, base), 1, size),
-        _text(said, (left + length + 0.4 * size, base), -1, size),
-    ]
-    return Annotation(drawn=[*bar, *texts])
-
-
-def _text(text: str, at: tuple[float, float], align: int, height: float) -> Text:
-    return Text(
-        role=Role.SCALE_NAME,
-        of="speed",
-        text=text,
-        anchor=at,
-        offset=(0.0, 0.0),
-        height=height,
-        align=align,
-    )
+    write = partial(drawn_text, Role.SCALE_NAME, "speed", offset=(0.0, 0.0), height=size)
+    bar.append(write("0", complex(left - 0.4 * size, base), align=1))
+    bar.append(write(said, complex(left + length + 0.4 * size, base), align=-1))
+    return Annotation(drawn=bar)
 
 
 # ----------------------------------------------------------------------
@@ -388,20 +367,11 @@ def further_positions(pose: Pose, motion: Motion, count: int) -> list[Further]:
             break
         shown.append(k)
         away = np.minimum(away, np.abs(places - places[k]).max(axis=1))
+    rows = [int(found[k]) for k in shown]
+    limits = [limit[k] for k in shown]
     return [
-        Further(
-            row=int(found[k]),
-            pose=replace(
-                pose,
-                points=dict(zip(pose.paths, places[k].tolist(), strict=True)),
-                angles={
-                    name: float(series.value[found[k]]) * motion.units.angle.radians
-                    for name, series in motion.links.items()
-                },
-            ),
-            limit=limit[k],
-        )
-        for k in shown
+        Further(row=row, pose=pose.moved_to(motion, row), limit=kind)
+        for row, kind in zip(rows, limits, strict=True)
     ]
 
 
@@ -461,11 +431,10 @@ def limit_marks(
         place = further.pose.points[of]
         if further.limit is LimitKind.DEAD_POINT:
             across = 3.0 * measures.pin * _direction(further, of) * 1j
-            ends = (xy(place - across), xy(place + across))
-            marks.append(Polyline(role=Role.LIMIT, of=of, points=ends))
+            marks.append(drawn_line(Role.LIMIT, of, (place - across, place + across)))
         else:
-            corners = tuple(xy(place + 1.7 * measures.pin * 1j**k) for k in range(4))
-            marks.append(Polygon(role=Role.LIMIT, of=of, points=corners))
+            corners = (place + 1.7 * measures.pin * 1j**k for k in range(4))
+            marks.append(drawn_area(Role.LIMIT, of, corners))
         text = f"{further.limit.word} {lead_text(motion, further.row)}"
         height = 0.8 * measures.text
         names.append(places_beside(Role.LIMIT_NAME, of, text, place, height, measures))
@@ -588,7 +557,7 @@ def _curve(
     kept = np.where(inside, curve, complex(np.nan, np.nan))
     width = measures.stroke / 2
     return [
-        Polyline(role=role, of=link, points=tuple(map(xy, run)))
+        drawn_line(role, link, run)
         for run in drawn_once(thinned(kept, width), width)
         if len(run) > 1
     ]

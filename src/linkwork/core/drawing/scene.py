@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from enum import Enum
 from functools import cached_property
@@ -58,6 +58,11 @@ class Box:
     def grown(self, by: float) -> Box:
         """The box enlarged by ``by`` on every side."""
         return Box(self.left - by, self.bottom - by, self.right + by, self.top + by)
+
+    def sized(self, width: float, height: float) -> Box:
+        """A box of another size about the same centre."""
+        x, y = self.centre
+        return Box(x - width / 2, y - height / 2, x + width / 2, y + height / 2)
 
     def with_box(self, other: Box) -> Box:
         """The smallest box around both."""
@@ -458,6 +463,67 @@ def xy(z: complex) -> XY:
     return float(z.real), float(z.imag)
 
 
+def round_up(number: float, steps: Sequence[float]) -> float:
+    """The smallest of ``steps``, from 1 up, times a power of ten that is not smaller."""
+    power: float = 10.0 ** int(f"{number:e}".partition("e")[2])
+    return min(k * power for k in (*steps, 10.0) if k * power >= number * (1.0 - 1e-9))
+
+
+def round_down(number: float, steps: Sequence[float]) -> float:
+    """The largest of ``steps``, from 1 up, times a power of ten that is not larger."""
+    power: float = 10.0 ** int(f"{number:e}".partition("e")[2])
+    return max(k * power for k in steps if k * power <= number * (1.0 + 1e-9))
+
+
+def drawn_line(
+    role: Role, of: str, points: Iterable[complex], tone: int = 0, head: float = 0.0
+) -> Polyline:
+    """A line through points x + iy."""
+    return Polyline(role=role, of=of, tone=tone, points=tuple(map(xy, points)), head=head)
+
+
+def drawn_area(role: Role, of: str, corners: Iterable[complex], tone: int = 0) -> Polygon:
+    """An area with corners x + iy."""
+    return Polygon(role=role, of=of, tone=tone, points=tuple(map(xy, corners)))
+
+
+def drawn_disc(role: Role, of: str, centre: complex, radius: float, tone: int = 0) -> Disc:
+    """A disc about x + iy."""
+    return Disc(role=role, of=of, tone=tone, centre=xy(centre), radius=radius)
+
+
+def drawn_arc(
+    role: Role, of: str, centre: complex, radius: float, start: float, sweep: float, head: float = 0
+) -> Arc:
+    """An arc about x + iy."""
+    return Arc(
+        role=role, of=of, centre=xy(centre), radius=radius, start=start, sweep=sweep, head=head
+    )
+
+
+def drawn_text(
+    role: Role,
+    of: str,
+    text: str,
+    anchor: complex,
+    offset: XY,
+    height: float,
+    tone: int = 0,
+    align: int = 0,
+) -> Text:
+    """A text near x + iy; by default centred there."""
+    return Text(
+        role=role,
+        of=of,
+        tone=tone,
+        text=text,
+        anchor=xy(anchor),
+        offset=offset,
+        height=height,
+        align=align,
+    )
+
+
 def text_width(text: str, height: float) -> float:
     """The printed width of a text, estimated from a table of letter widths [em]."""
     return height * sum(_letter_width(letter) for letter in text)
@@ -546,17 +612,15 @@ class Theme:
             colour = self.tones[(tone - 1) % len(self.tones)] if tone else self.driven
         elif colour == "level":
             colour = self.at_level(primitive.level)
-        return self._mixed(colour, primitive.fade) if colour and primitive.fade else colour
+        # mixed with the page and opaque, so that crossings stay faint
+        faded = colour and primitive.fade
+        return _between(colour, self.background, primitive.fade) if faded else colour
 
     def at_level(self, level: float) -> str:
         """The colour of the scale at a level from 0 to 1."""
         place = min(max(level, 0.0), 1.0) * (len(self.scale) - 1)
         k = min(int(place), len(self.scale) - 2)
         return _between(self.scale[k], self.scale[k + 1], place - k)
-
-    def _mixed(self, colour: str, fade: float) -> str:
-        """A colour mixed with the page; opaque, so that crossings stay faint."""
-        return _between(colour, self.background, fade)
 
 
 def _between(colour: str, other: str, share: float) -> str:

@@ -7,7 +7,6 @@ files.
 
 from __future__ import annotations
 
-import html
 import re
 from collections.abc import Iterator
 from html import escape
@@ -108,7 +107,7 @@ def inline_svg(
     box = " ".join(map(writer.number, (shown.left, -shown.top, shown.width, shown.height)))
     parts = "".join(part for primitive in scene.primitives for part in writer.drawn(primitive))
     return (
-        f'<svg xmlns="http://www.w3.org/2000/svg" role="img" aria-label="{html.escape(name)}" '
+        f'<svg xmlns="http://www.w3.org/2000/svg" role="img" aria-label="{escape(name)}" '
         f'viewBox="{box}" width="{scale * shown.width:.0f}" height="{scale * shown.height:.0f}" '
         'style="max-width:100%;height:auto;stroke-linecap:round;stroke-linejoin:round;'
         f'font-family:{_FONT}">{parts}</svg>'
@@ -118,8 +117,7 @@ def inline_svg(
 def _not_flat(box: Box) -> Box:
     """The box, its shorter side enlarged so that a flat mechanism has room above and below."""
     least = _FLATTEST * max(box.width, box.height)
-    wide, high = (max(0.0, least - side) / 2 for side in (box.width, box.height))
-    return Box(box.left - wide, box.bottom - high, box.right + wide, box.top + high)
+    return box.sized(max(least, box.width), max(least, box.height))
 
 
 class _Writer:
@@ -198,7 +196,7 @@ class _Writer:
             f'<text x="{self.number(x)}" y="{self.number(-y)}" text-anchor="{anchor}" '
             f'style="font-size:{self.number(primitive.height)}px;fill:{fill};'
             f'{halo}stroke-width:{self.number(_HALO * primitive.height)}">'
-            f"{html.escape(primitive.text)}</text>"
+            f"{escape(primitive.text)}</text>"
         )
 
 

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass, field
-from math import floor, log10
 
 from linkwork.core.drawing.scene import (
     LIGHT,
@@ -18,6 +17,8 @@ from linkwork.core.drawing.scene import (
     Scene,
     Text,
     Theme,
+    round_down,
+    round_up,
 )
 from linkwork.core.foundation.names import as_latex
 from linkwork.core.foundation.units import LENGTHS
@@ -48,24 +49,12 @@ def picture_scale(scene: Scene) -> tuple[float, str]:
     size = max(scene.box.width, scene.box.height) * unit
     scale = 1.0
     if size > _WIDEST:
-        scale = 1.0 / _round_up(size / _WIDEST)
+        scale = 1.0 / round_up(size / _WIDEST, _STEPS)
     elif size < _LEAST:
-        scale = _round_down(_WIDEST / size)
+        scale = round_down(_WIDEST / size, _STEPS)
     shown = f"1:{1.0 / scale:.12g}" if scale <= 1.0 else f"{scale:.12g}:1"
     known = scene.unit in LENGTHS
     return unit * scale, f"scale {shown}" + ("" if known else ", a unit of length taken as 1 mm")
-
-
-def _round_up(number: float) -> float:
-    """The smallest of 1, 2, 5 times a power of ten that is not smaller."""
-    power = 10.0 ** floor(log10(number))
-    return min(k * p for k in _STEPS for p in (power, 10.0 * power) if k * p >= number * (1 - 1e-9))
-
-
-def _round_down(number: float) -> float:
-    """The largest of 1, 2, 5 times a power of ten that is not larger."""
-    power = 10.0 ** floor(log10(number))
-    return max(k * power for k in _STEPS if k * power <= number * (1 + 1e-9))
 
 
 def tikz_picture(scene: Scene, theme: Theme = LIGHT) -> str:

@@ -11,7 +11,7 @@ from dataclasses import dataclass
 
 from linkwork.core.drawing.labels import Choice, places_along, places_within
 from linkwork.core.drawing.pose import Pose, printed_formula
-from linkwork.core.drawing.scene import COINCIDENT, Measures, Polyline, Primitive, Role, xy
+from linkwork.core.drawing.scene import COINCIDENT, Measures, Primitive, Role, drawn_line
 from linkwork.core.results.vector_loop import LoopVector, VectorLoop
 
 _NAMED = 0.1  # additional value for an end at a point in the loop's name
@@ -129,16 +129,6 @@ _BESIDE = 1.3  # distance of arrows side by side, in pin radii
 _LONGEST_HEAD = 0.4  # of an arrow
 
 
-@dataclass(frozen=True)
-class _Arrow:
-    """A drawn vector: its ends, and the number of its loop."""
-
-    vector: LoopVector
-    tail: complex
-    tip: complex
-    loop: int
-
-
 def vector_edges(loops: Sequence[VectorLoop], pose: Pose) -> list[list[Edge]]:
     """The polygons of all loops, without vectors of length zero."""
     found = [polygon(loop, pose) for loop in loops]
@@ -150,40 +140,27 @@ def vector_symbols(
     loops: Sequence[VectorLoop], polygons: Sequence[Sequence[Edge]], measures: Measures
 ) -> tuple[list[Primitive], list[Choice]]:
     """The arrows of all loops, and positions for the names of vectors and loops."""
-    arrows = [
-        _Arrow(edge.vector, edge.tail, edge.tip, number)
-        for number, edges in enumerate(polygons, 1)
-        for edge in edges
-    ]
     drawn: list[Primitive] = []
     names: list[Choice] = []
-    for k, arrow in enumerate(arrows):
-        twins = [other for other in arrows[:k] if _same_line(arrow, other, measures)]
-        tail, tip = _moved(arrow, len(twins), measures)
-        head = min(measures.head, _LONGEST_HEAD * abs(tip - tail))
-        drawn.append(
-            Polyline(
-                role=Role.VECTOR,
-                of=arrow.vector.name,
-                tone=arrow.loop,
-                points=(xy(tail), xy(tip)),
-                head=head,
-            )
-        )
-        if not any(other.vector.name == arrow.vector.name for other in twins):
-            text = printed_formula(arrow.vector.name)
-            line = (tail, tip)
-            names.append(
-                places_along(Role.VECTOR_NAME, arrow.vector.name, text, line, arrow.loop, measures)
-            )
-    return drawn, names + [
-        _loop_name(loop, [a for a in arrows if a.loop == k], k, measures)
-        for k, loop in enumerate(loops, 1)
-        if any(a.loop == k for a in arrows)
-    ]
+    before: list[Edge] = []
+    for number, edges in enumerate(polygons, 1):
+        for edge in edges:
+            name = edge.vector.name
+            twins = [other for other in before if _same_line(edge, other, measures)]
+            before.append(edge)
+            ends = tail, tip = _moved(edge, len(twins), measures)
+            head = min(measures.head, _LONGEST_HEAD * abs(tip - tail))
+            drawn.append(drawn_line(Role.VECTOR, name, ends, number, head))
+            if all(other.vector.name != name for other in twins):
+                text = printed_formula(name)
+                names.append(places_along(Role.VECTOR_NAME, name, text, ends, number, measures))
+    for number, (loop, edges) in enumerate(zip(loops, polygons, strict=True), 1):
+        if edges:
+            names.append(_loop_name(loop, edges, number, measures))
+    return drawn, names
 
 
-def _same_line(one: _Arrow, other: _Arrow, measures: Measures) -> bool:
+def _same_line(one: Edge, other: Edge, measures: Measures) -> bool:
     """Whether two arrows overlap: both lie on the same line and share a part of it."""
     near = COINCIDENT * measures.size
     length = abs(one.tip - one.tail)
@@ -195,7 +172,7 @@ def _same_line(one: _Arrow, other: _Arrow, measures: Measures) -> bool:
     return min(high, length) - max(low, 0.0) > near
 
 
-def _moved(arrow: _Arrow, before: int, measures: Measures) -> tuple[complex, complex]:
+def _moved(arrow: Edge, before: int, measures: Measures) -> tuple[complex, complex]:
     """The arrow shifted sideways, given the number of others on its line."""
     along = (arrow.tip - arrow.tail) / abs(arrow.tip - arrow.tail)
     if (along.real, along.imag) < (0.0, 0.0):
@@ -205,7 +182,7 @@ def _moved(arrow: _Arrow, before: int, measures: Measures) -> tuple[complex, com
     return arrow.tail + across, arrow.tip + across
 
 
-def _loop_name(loop: VectorLoop, arrows: list[_Arrow], number: int, measures: Measures) -> Choice:
+def _loop_name(loop: VectorLoop, arrows: Sequence[Edge], number: int, measures: Measures) -> Choice:
     """Positions for a loop's name near its middle."""
     ends = [end for arrow in arrows for end in (arrow.tail, arrow.tip)]
     text = f"loop {printed_formula(loop.label)}"

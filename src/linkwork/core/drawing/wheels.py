@@ -12,13 +12,13 @@ import numpy as np
 from linkwork.core.drawing.links import tones
 from linkwork.core.drawing.pose import Pose
 from linkwork.core.drawing.scene import (
-    Disc as Circle,
     Hatch,
     Measures,
-    Polygon,
-    Polyline,
     Primitive,
     Role,
+    drawn_area,
+    drawn_disc,
+    drawn_line,
     xy,
 )
 from linkwork.core.foundation.arrays import Array, ComplexArray
@@ -202,7 +202,7 @@ def _wheel(wheel: _Wheel, measures: Measures) -> Iterator[Primitive]:
     inner = _edge(wheel, measures)
     yield from (_ring if disc.ring else _solid)(wheel, inner, measures)
     if disc.kind == "gear":
-        yield Circle(role=Role.PITCH, of=disc.name, centre=xy(wheel.centre), radius=disc.radius)
+        yield drawn_disc(Role.PITCH, disc.name, wheel.centre, disc.radius)
     if disc.link != GROUND and disc.kind != "roller" and wheel.spoke:
         yield from _mark(wheel, measures)
 
@@ -234,12 +234,9 @@ def _solid(wheel: _Wheel, edge: ComplexArray, measures: Measures) -> Iterator[Pr
     role = Role.FRAME if fixed else Role.WHEEL
     if wheel.phase is None:
         radius = _plain_radius(disc, measures)
-        yield Circle(
-            role=role, of=disc.link, tone=wheel.tone, centre=xy(wheel.centre), radius=radius
-        )
+        yield drawn_disc(role, disc.link, wheel.centre, radius, wheel.tone)
     else:
-        corners = tuple(map(xy, edge[:-1]))
-        yield Polygon(role=role, of=disc.link, tone=wheel.tone, points=corners)
+        yield drawn_area(role, disc.link, edge[:-1], wheel.tone)
     if fixed:
         inside = float(np.abs(edge - wheel.centre).min())
         yield round_hatching(wheel.centre, inside, -measures.hatch, disc.name)
@@ -252,17 +249,12 @@ def _ring(wheel: _Wheel, edge: ComplexArray, measures: Measures) -> Iterator[Pri
     outside = outer_radius(disc, measures)
     outer = _circle(wheel.centre, outside)
     # Along the edge and back along the outer circle encloses the area between them.
-    band = tuple(map(xy, np.concatenate((edge, outer[::-1]))))
-    yield Polygon(
-        role=Role.FRAME_BAND if fixed else Role.BAND, of=disc.link, tone=wheel.tone, points=band
-    )
+    band = np.concatenate((edge, outer[::-1]))
+    role = Role.FRAME_BAND if fixed else Role.BAND
+    yield drawn_area(role, disc.link, band, wheel.tone)
     for line in (edge, outer):
-        yield Polyline(
-            role=Role.FRAME if fixed else Role.WHEEL,
-            of=disc.link,
-            tone=wheel.tone,
-            points=tuple(map(xy, line)),
-        )
+        role = Role.FRAME if fixed else Role.WHEEL
+        yield drawn_line(role, disc.link, line, wheel.tone)
     if fixed:
         yield round_hatching(wheel.centre, outside, measures.hatch, disc.name)
 
@@ -273,11 +265,11 @@ def _mark(wheel: _Wheel, measures: Measures) -> Iterator[Primitive]:
     start, end = min(measures.pin, 0.4 * disc.radius), 0.78 * disc.radius
     if disc.ring:
         start, end = disc.radius, outer_radius(disc, measures)
-    ends = (xy(wheel.centre + start * way), xy(wheel.centre + end * way))
-    yield Polyline(role=Role.MARK, of=disc.link, tone=wheel.tone, points=ends)
+    ends = (wheel.centre + start * way, wheel.centre + end * way)
+    yield drawn_line(Role.MARK, disc.link, ends, wheel.tone)
     if not disc.ring:
         dot = min(0.8 * measures.pin, 0.15 * disc.radius)
-        yield Circle(role=Role.MARK, of=disc.link, tone=wheel.tone, centre=ends[1], radius=dot)
+        yield drawn_disc(Role.MARK, disc.link, ends[1], dot, wheel.tone)
 
 
 def round_hatching(centre: complex, radius: float, depth: float, of: str) -> Hatch:

@@ -280,28 +280,24 @@ def derivative(node: Node, name: str, radians: float = 1.0) -> Node:
     """
     if not _contains(node, name):
         return _ZERO
+
+    def d(part: Node) -> Node:
+        return derivative(part, name, radians)
+
     match node:
         case Name():
             return _ONE
         case Negative():
-            return _negative(derivative(node.operand, name, radians))
-        case Binary("+" | "-"):
-            left, right = (
-                derivative(node.left, name, radians),
-                derivative(node.right, name, radians),
-            )
-            return sum_of(left, right) if node.operator == "+" else sum_of(left, _negative(right))
-        case Binary("*"):
-            return sum_of(
-                product_of(derivative(node.left, name, radians), node.right),
-                product_of(node.left, derivative(node.right, name, radians)),
-            )
-        case Binary("/"):
-            top = sum_of(
-                product_of(derivative(node.left, name, radians), node.right),
-                _negative(product_of(node.left, derivative(node.right, name, radians))),
-            )
-            return Binary("/", top, Binary("^", node.right, NumberNode(2.0)))
+            return _negative(d(node.operand))
+        case Binary("+", left, right):
+            return sum_of(d(left), d(right))
+        case Binary("-", left, right):
+            return sum_of(d(left), _negative(d(right)))
+        case Binary("*", left, right):
+            return sum_of(product_of(d(left), right), product_of(left, d(right)))
+        case Binary("/", left, right):
+            top = sum_of(product_of(d(left), right), _negative(product_of(left, d(right))))
+            return Binary("/", top, Binary("^", right, NumberNode(2.0)))
         case Binary("<" | "<=" | ">" | ">="):
             return _ZERO
         case Binary():
@@ -333,6 +329,9 @@ def _power(node: Binary, name: str, radians: float) -> Node:
 
 
 def _chain(node: Call, name: str, radians: float) -> Node:
+    def d(part: Node) -> Node:
+        return derivative(part, name, radians)
+
     x = node.arguments[0]
     square = Binary("^", x, NumberNode(2.0))
     outer: dict[str, Node] = {
@@ -348,7 +347,7 @@ def _chain(node: Call, name: str, radians: float) -> Node:
         "atan": Binary("/", _ONE, Binary("+", _ONE, square)),
         "abs": Binary("/", x, node),
     }
-    inner = derivative(x, name, radians)
+    inner = d(x)
     # the derivative of sin(k x) has the factor k = radians per unit
     if node.function in ("sin", "cos", "tan") and radians != 1.0:
         inner = product_of(NumberNode(radians), inner)
@@ -358,16 +357,11 @@ def _chain(node: Call, name: str, radians: float) -> Node:
         return product_of(outer[node.function], inner)
     if node.function == "hypot":
         y = node.arguments[1]
-        top = sum_of(
-            product_of(x, derivative(x, name, radians)), product_of(y, derivative(y, name, radians))
-        )
+        top = sum_of(product_of(x, d(x)), product_of(y, d(y)))
         return Binary("/", top, node)
     if node.function == "atan2":
         other = node.arguments[1]
-        top = sum_of(
-            product_of(other, derivative(x, name, radians)),
-            _negative(product_of(x, derivative(other, name, radians))),
-        )
+        top = sum_of(product_of(other, d(x)), _negative(product_of(x, d(other))))
         whole = Binary("/", top, Binary("+", square, Binary("^", other, NumberNode(2.0))))
         return whole if radians == 1.0 else product_of(NumberNode(1.0 / radians), whole)
     raise ValueError(f"{node.function} has a derivative that is not a single formula")

@@ -258,12 +258,10 @@ class _Reader:
             raise self.error(f"{token.text} is too large", token.column)
         follower = self.token
         if follower.kind == "name" and follower.text in _UNITS:
-            named = [each for each in self.unit() if each.kind == "name"]
-            unit = "".join(each.text for each in self.unit())
-            keys = ", ".join(f'{_UNITS[each.text]} = "{each.text}"' for each in named)
+            unit = follower.text
             raise self.error(
-                f"numbers carry no unit here: write {token.text} and set {keys} for the whole "
-                f'file; a product is written "{token.text}*{unit}"',
+                f'numbers carry no unit here: write {token.text} and set {_UNITS[unit]} = "{unit}" '
+                f'for the whole file; a product is written "{token.text}*{unit}"',
                 follower.column,
             )
         if follower.kind == "name":
@@ -271,17 +269,6 @@ class _Reader:
                 f'write the multiplication sign: "{token.text}*{follower.text}"', follower.column
             )
         return NumberNode(value, token.column)
-
-    def unit(self) -> list[_Token]:
-        """The tokens of a unit such as N/mm that begins here."""
-        found = [self.token]
-        for sign, name in zip(
-            self.tokens[self.at + 1 :: 2], self.tokens[self.at + 2 :: 2], strict=False
-        ):
-            if sign.text not in ("*", "/") or name.text not in _UNITS:
-                break
-            found += [sign, name]
-        return found
 
     def name(self, token: _Token) -> Node:
         name = canonical(token.text)

@@ -9,11 +9,12 @@ from typing import Any, cast
 
 import numpy as np
 
+from linkwork.core.expression.derivatives import Functions, evaluate_by
 from linkwork.core.expression.grammar import CONSTANTS
 from linkwork.core.expression.tree import Binary, Call, Name, Negative, Node, NumberNode
 from linkwork.core.foundation import precise
 from linkwork.core.foundation.errors import ExpressionError, choices
-from linkwork.core.foundation.lanes import Lanes, as_float, finite, is_batched, is_fractional
+from linkwork.core.foundation.lanes import as_float, finite, first_lanes, is_batched, is_fractional
 from linkwork.core.foundation.precise import (
     PI,
     Precise,
@@ -62,9 +63,9 @@ def applied(name: str, arguments: Sequence[float]) -> float:
     ValueError, OverflowError
         As in ``math``: outside the domain, or if the value is too large.
     """
-    given: list[object] = list(arguments)
-    first = next(number for number in given if isinstance(number, Lanes))
-    found = first.apply(FUNCTIONS[name], *given)
+    first = first_lanes(arguments)
+    assert first is not None
+    found = first.apply(FUNCTIONS[name], *arguments)
     if name in _PARTIAL and not found.holds(np.isfinite):
         raise OverflowError if name == "exp" else ValueError
     return cast(float, found)
@@ -187,7 +188,6 @@ def _applied(node: Call, arguments: list[float], unit: AngleUnit, text: str) -> 
 # Formulas of real numbers to about 32 digits, so that their rounding is that of their result.
 
 
-_CONSTANTS = {"pi": PI, "e": precise.E}
 _ONE = Precise(1.0)
 
 
@@ -196,48 +196,37 @@ def radians_of(unit: AngleUnit) -> Precise:
     return PI / 180.0 if unit is AngleUnit.DEGREE else _ONE
 
 
+#: Numbers that were rounded to floats.
+_ROUNDED = {
+    math.pi: PI,
+    math.e: precise.E,
+    **{unit.radians: radians_of(unit) for unit in AngleUnit},
+}
+
+
 def precise_value(node: Node, names: Mapping[str, Precise], unit: AngleUnit) -> Precise:
     """The value of a formula that has one; see :func:`~linkwork.core.expression.values.value`."""
-    match node:
-        case NumberNode():
-            return Precise(node.value)
-        case Name():
-            return names[node.name] if node.name in names else _CONSTANTS[node.name]
-        case Negative():
-            return -precise_value(node.operand, names, unit)
-        case Binary():
-            left, right = (precise_value(side, names, unit) for side in (node.left, node.right))
-            return _OPERATORS[node.operator](left, right)
-        case Call():
-            given = [precise_value(argument, names, unit) for argument in node.arguments]
-            if node.function in ("sin", "cos", "tan"):
-                given = [given[0] * radians_of(unit)]
-            found = _FUNCTIONS[node.function](*given)
-            return found / radians_of(unit) if node.function in _TO_ANGLE else found
+    return evaluate_by(_PRECISE, node, names, unit)
 
 
-def _power(x: Precise, y: Precise) -> Precise:
-    if isinstance(y.high, float) and y.high.is_integer() and not y.low and abs(y.high) <= 64.0:
-        found = reduce(lambda total, _: total * x, range(abs(int(y.high))), _ONE)
-        return found if y.high >= 0.0 else _ONE / found
-    return exp(y * log(x))
-
-
-_OPERATORS: dict[str, Callable[[Precise, Precise], Precise]] = {
-    "+": lambda x, y: x + y, "-": lambda x, y: x - y, "*": lambda x, y: x * y,
-    "/": lambda x, y: x / y, "^": _power,
-}  # fmt: skip
-_TO_ANGLE = ("asin", "acos", "atan", "atan2")
-_FUNCTIONS: dict[str, Callable[..., Precise]] = {
-    "sqrt": sqrt, "exp": exp, "ln": log, "log10": lambda x: log(x) / log(Precise(10.0)),
-    "abs": abs, "hypot": lambda *sides: sqrt(sum((x * x for x in sides), Precise(0.0))),
-    "sin": lambda x: sin_cos(x)[0], "cos": lambda x: sin_cos(x)[1],
-    "tan": lambda x: sin_cos(x)[0] / sin_cos(x)[1],
-    "asin": asin, "acos": acos, "atan": lambda x: phase(joined(_ONE, x)),
-    "atan2": lambda y, x: phase(joined(x, y)),
-    "min": lambda *all_: reduce(lambda x, y: chosen(y.high < x.high, y, x), all_),
-    "max": lambda *all_: reduce(lambda x, y: chosen(y.high > x.high, y, x), all_),
-}  # fmt: skip
+_PRECISE: Functions[Precise] = Functions(
+    literal=Precise,
+    rounded=_ROUNDED.__getitem__,
+    plain={
+        "sqrt": sqrt, "exp": exp, "ln": log, "log10": lambda x: log(x) / log(Precise(10.0)),
+        "abs": abs, "hypot": lambda *sides: sqrt(sum((x * x for x in sides), Precise(0.0))),
+        "min": lambda *all_: reduce(lambda x, y: chosen(y.high < x.high, y, x), all_),
+        "max": lambda *all_: reduce(lambda x, y: chosen(y.high > x.high, y, x), all_),
+    },
+    of_angle={
+        "sin": lambda x: sin_cos(x)[0], "cos": lambda x: sin_cos(x)[1],
+        "tan": lambda x: sin_cos(x)[0] / sin_cos(x)[1],
+    },
+    to_angle={
+        "asin": asin, "acos": acos, "atan": lambda x: phase(joined(_ONE, x)),
+        "atan2": lambda y, x: phase(joined(x, y)),
+    },
+)  # fmt: skip
 
 
 # ----------------------------------------------------------------------

@@ -10,9 +10,6 @@ from typing import TYPE_CHECKING, Any, Self, TypeVar, overload
 
 import numpy as np
 
-if TYPE_CHECKING:
-    import numpy.typing as npt
-
 # ----------------------------------------------------------------------
 # Type names for NumPy arrays by their contents.
 #
@@ -20,8 +17,6 @@ if TYPE_CHECKING:
 
 
 if TYPE_CHECKING:
-    from typing import Any
-
     import numpy.typing as npt
 
     AnyArray = npt.NDArray[Any]

@@ -290,6 +290,11 @@ def choices(kind: str, names: Iterable[str], wanted: object = "") -> str:
     return f"({kind}: {shown})"
 
 
+def undefined(kind: str, name: str, known: Iterable[str]) -> str:
+    """The message about a name that does not exist: ``point "B" is not defined (points: A)``."""
+    return f'{kind} "{name}" is not defined {choices(f"{kind}s", known, name)}'
+
+
 def _nearest(wanted: str, known: list[str]) -> list[str]:
     # to compare every wrong name with every known one would take minutes for thousands of each
     if len(known) > _MOST_COMPARED:

@@ -478,16 +478,14 @@ def rest_of(done: bool) -> Rest | None:
 _Function = Callable[..., Any]
 
 
-def _first_of_many(numbers: Iterable[object]) -> Lanes | None:
-    for number in numbers:
-        if isinstance(number, Lanes):
-            return number
-    return None
+def first_lanes(numbers: Iterable[object]) -> Lanes | None:
+    """The first number of many designs, if there is one."""
+    return next((number for number in numbers if isinstance(number, Lanes)), None)
 
 
 def _apply(of_arrays: _Function, of_numbers: _Function, *numbers: object) -> Any:
     """Apply a function of arrays if an argument has lanes, else a function of plain numbers."""
-    lanes = _first_of_many(numbers)
+    lanes = first_lanes(numbers)
     return of_numbers(*numbers) if lanes is None else lanes.apply(of_arrays, *numbers)
 
 
@@ -532,7 +530,7 @@ def exponential(z: complex) -> complex:
 
 def rect(length: float, angle: float) -> complex:
     """length · e^(i angle)."""
-    if _first_of_many((length, angle)) is None:
+    if first_lanes((length, angle)) is None:
         return cmath.rect(length, angle)
     return length * cis(angle)
 
@@ -586,7 +584,7 @@ def choose(condition: bool, yes: _Number, no: _Number) -> _Number:
     """``yes`` in lanes where the condition holds, else ``no``; both are computed."""
     truths: object = condition
     if isinstance(truths, Truths):
-        lanes = _first_of_many((yes, no))
+        lanes = first_lanes((yes, no))
         if lanes is None:
             picked: _Number = truths.consensus.pick(truths, yes, no)
             return picked
@@ -629,7 +627,7 @@ def smallest(numbers: Iterable[float], default: float = 0.0) -> float:
 
 
 def _extreme(numbers: list[float], default: float, *, most: bool) -> float:
-    lanes = _first_of_many(numbers)
+    lanes = first_lanes(numbers)
     if lanes is None:
         return max(numbers, default=default) if most else min(numbers, default=default)
     plain = [number for number in numbers if not is_batched(number)]
@@ -689,7 +687,7 @@ def uniform_value(x: float) -> float:
 def row_of(numbers: Iterable[float]) -> Array:
     """Numbers as an array (k,); its entries are objects if some have lanes."""
     found = list(numbers)
-    if _first_of_many(found) is None:
+    if first_lanes(found) is None:
         return np.array(found)
     row = np.empty(len(found), dtype=object)
     for k, number in enumerate(found):

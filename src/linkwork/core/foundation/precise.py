@@ -10,6 +10,7 @@ other arithmetics (formulas of cells, tapes, programs) are computed without seco
 from __future__ import annotations
 
 import math
+from functools import reduce
 from typing import Any
 
 import numpy as np
@@ -113,6 +114,13 @@ class _PreciseArithmetic(Arithmetic["Precise"]):
             return joined(x.real / y, x.imag / y)
         first = x.high / y.high
         return _normal(first, (x - y * first).high / y.high)
+
+    def power(self, x: Precise, y: Precise) -> Precise:
+        """x to the power y."""
+        if isinstance(y.high, float) and y.high.is_integer() and not y.low and abs(y.high) <= 64.0:
+            found = reduce(lambda total, _: total * x, range(abs(int(y.high))), Precise(1.0))
+            return found if y.high >= 0.0 else Precise(1.0) / found
+        return exp(y * log(x))
 
     def negate(self, x: Precise) -> Precise:
         """-x."""

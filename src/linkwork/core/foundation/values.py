@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 import types
 import typing
-from collections.abc import Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, fields
 from decimal import Decimal
 from functools import cache
@@ -104,7 +104,7 @@ T = TypeVar("T")
 def check_values(owner: Any) -> None:
     """Check that every field of a part, input or option has a value of its declared type.
 
-    Numbers that may be formulas are checked where they are evaluated.
+    Lists become tuples. Numbers that may be formulas are checked where they are evaluated.
 
     Raises
     ------
@@ -114,6 +114,10 @@ def check_values(owner: Any) -> None:
     owner_type: type = type(owner)
     for name, kind in _declared(owner_type).items():
         given = getattr(owner, name)
+        kinds = (kind, *typing.get_args(kind)) if is_listed(given) else ()
+        if any(typing.get_origin(part) is tuple for part in kinds):
+            given = _frozen(given)
+            object.__setattr__(owner, name, given)
         if not _fits(given, kind):
             raise InputError(
                 f"{name} of lw.{owner_type.__name__} must be {_wanted(kind)}, got {as_told(given)}"
@@ -160,6 +164,13 @@ def is_listed(given: object) -> bool:
     if isinstance(given, str | bytes | Mapping) or not isinstance(given, Iterable):
         return False
     return not isinstance(given, np.ndarray) or given.ndim > 0
+
+
+def _frozen(entry: Any) -> object:
+    """Rows of rows as tuples of tuples."""
+    if isinstance(entry, np.ndarray):
+        entry = entry.tolist()
+    return tuple(map(_frozen, entry)) if is_listed(entry) else entry
 
 
 @cache
@@ -284,9 +295,10 @@ class ListOf:
 
 @dataclass(frozen=True)
 class Table:
-    """A table whose keys are known."""
+    """A table whose keys are known; ``made`` makes an object of its values."""
 
     keys: tuple[Key, ...]
+    made: Callable[..., Any] = dict
 
 
 @dataclass(frozen=True)
@@ -295,6 +307,7 @@ class Tables:
 
     keys: tuple[Key, ...]
     single: bool = False
+    made: Callable[..., Any] = dict
 
 
 @dataclass(frozen=True)
@@ -302,6 +315,7 @@ class TablesOrFormula:
     """A list of tables, or a formula in quotes."""
 
     keys: tuple[Key, ...]
+    made: Callable[..., Any] = dict
 
 
 @dataclass(frozen=True)
@@ -331,23 +345,9 @@ class Either:
 
 
 Kind = (
-    Constant
-    | Text
-    | NumberValue
-    | PlainNumber
-    | Whole
-    | Formula
-    | Speed
-    | Measured
-    | Flag
-    | ListOf
-    | Table
-    | Tables
-    | TablesOrFormula
-    | Named
-    | Several
-    | Either
-)
+    Constant | Text | NumberValue | PlainNumber | Whole | Formula | Speed | Measured | Flag
+    | ListOf | Table | Tables | TablesOrFormula | Named | Several | Either
+)  # fmt: skip
 
 
 @dataclass(frozen=True)

@@ -209,16 +209,6 @@ class Figure:
         return ()
 
     @property
-    def travelling(self) -> tuple[str, ...]:
-        """Points whose whole path must be inside the picture."""
-        return ()
-
-    @property
-    def extent(self) -> tuple[str, ...]:
-        """Points that give the extent of the figure without a motion."""
-        return ()
-
-    @property
     def turns_with(self) -> tuple[str, str] | None:
         """The two points whose line rotates with the figure."""
         return None

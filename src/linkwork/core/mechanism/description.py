@@ -90,7 +90,7 @@ def _folded(key: str) -> tuple[str, ...]:
 
 
 def check_field_types(description: Any) -> None:
-    """Check that every field has the type of its default value.
+    """Check that every field has the type of its default value; tables and lists become immutable.
 
     Raises
     ------
@@ -103,9 +103,11 @@ def check_field_types(description: Any) -> None:
         name, given = field.name, getattr(description, field.name)
         if isinstance(field.default, Mapping):
             _check_mapping(name, str(field.type), given)
+            object.__setattr__(description, name, FrozenDict.of(given))
         elif isinstance(field.default, tuple):
             if not is_listed(given):
                 raise _wrong(name, "a list", given)
+            object.__setattr__(description, name, tuple(given))
         elif isinstance(field.default, bool | str) and not isinstance(given, type(field.default)):
             wanted = "a text" if isinstance(field.default, str) else "True or False"
             raise _wrong(name, wanted, given)
@@ -311,12 +313,7 @@ class Description:
             raise InputError(
                 'inputs must be Input objects: lw.Input(link="crank"), or a list of them'
             )
-        set_(self, "inputs", tuple(self.inputs))
-        set_(self, "trace", tuple(self.trace))
         check_entries("questions", Question, self.questions)
-        set_(self, "questions", tuple(self.questions))
-        for field in ("dimensions", "outputs", "tolerances"):
-            set_(self, field, FrozenDict.of(getattr(self, field)))
 
     @cached_property
     def numbers(self) -> Numbers:

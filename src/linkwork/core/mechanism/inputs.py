@@ -5,12 +5,12 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 import numpy as np
 
 from linkwork.core.expression.grammar import CONSTANTS, parse
 from linkwork.core.expression.tree import names_in
+from linkwork.core.foundation.arrays import Array
 from linkwork.core.foundation.errors import ExpressionError, internal
 from linkwork.core.foundation.units import split_unit
 from linkwork.core.foundation.values import (
@@ -21,12 +21,8 @@ from linkwork.core.foundation.values import (
     Speed,
     Text,
     check_values,
-    is_listed,
 )
 from linkwork.core.mechanism.dimensions import Number, Numbers
-
-if TYPE_CHECKING:
-    from linkwork.core.foundation.arrays import Array
 
 # ----------------------------------------------------------------------
 # Motion laws of cam followers and inputs: rises from 0 to 1 while x goes from 0 to 1.
@@ -44,46 +40,32 @@ class Piece:
     sine: tuple[float, float, float] = (0.0, 0.0, 0.0)
 
 
-@dataclass(frozen=True)
-class _Accelerated:
-    """α + A sin(ω t + ψ) for t from 0 to ``over``."""
-
-    over: float
-    constant: float = 0.0
-    amplitude: float = 0.0
-    rate: float = 1.0
-    phase: float = 0.0
-
-
 _POLYNOMIALS: dict[str, tuple[float, ...]] = {
     "3-4-5": (0.0, 0.0, 0.0, 10.0, -15.0, 6.0),
     "4-5-6-7": (0.0, 0.0, 0.0, 0.0, 35.0, -84.0, 70.0, -20.0),
 }
-_PI = math.pi
-_ACCELERATIONS: dict[str, tuple[_Accelerated, ...]] = {
-    "harmonic": (_Accelerated(1.0, 0.0, 1.0, _PI, _PI / 2),),
-    "cycloidal": (_Accelerated(1.0, 0.0, 1.0, 2 * _PI, 0.0),),
+_PI, _STEADY = math.pi, (0.0, 1.0, 0.0)
+#: Accelerations α + A sin(ω t + ψ) as pieces of degree 0.
+_ACCELERATIONS: dict[str, tuple[Piece, ...]] = {
+    "harmonic": (Piece(1.0, (0.0,), (1.0, _PI, _PI / 2)),),
+    "cycloidal": (Piece(1.0, (0.0,), (1.0, 2 * _PI, 0.0)),),
     "modified sine": (
-        _Accelerated(1 / 8, 0.0, 1.0, 4 * _PI, 0.0),
-        _Accelerated(3 / 4, 0.0, 1.0, 4 * _PI / 3, _PI / 2),
-        _Accelerated(1 / 8, 0.0, 1.0, 4 * _PI, 3 * _PI / 2),
+        Piece(1 / 8, (0.0,), (1.0, 4 * _PI, 0.0)),
+        Piece(3 / 4, (0.0,), (1.0, 4 * _PI / 3, _PI / 2)),
+        Piece(1 / 8, (0.0,), (1.0, 4 * _PI, 3 * _PI / 2)),
     ),
     "modified trapezoid": (
-        _Accelerated(1 / 8, 0.0, 1.0, 4 * _PI, 0.0),
-        _Accelerated(1 / 4, 1.0),
-        _Accelerated(1 / 4, 0.0, 1.0, 4 * _PI, _PI / 2),
-        _Accelerated(1 / 4, -1.0),
-        _Accelerated(1 / 8, 0.0, 1.0, 4 * _PI, 3 * _PI / 2),
+        Piece(1 / 8, (0.0,), (1.0, 4 * _PI, 0.0)),
+        Piece(1 / 4, (1.0,), _STEADY),
+        Piece(1 / 4, (0.0,), (1.0, 4 * _PI, _PI / 2)),
+        Piece(1 / 4, (-1.0,), _STEADY),
+        Piece(1 / 8, (0.0,), (1.0, 4 * _PI, 3 * _PI / 2)),
     ),
 }
 
 #: The laws by name; a dwell has no pieces.
 LAWS = ("dwell", *_ACCELERATIONS, *_POLYNOMIALS)
-_ACCELERATIONS["trapezoid"] = (
-    _Accelerated(1 / 3, 1.0),
-    _Accelerated(1 / 3, 0.0),
-    _Accelerated(1 / 3, -1.0),
-)
+_ACCELERATIONS["trapezoid"] = tuple(Piece(1 / 3, (a,), _STEADY) for a in (1.0, 0.0, -1.0))
 #: Further laws of inputs, which a cam could not follow: its follower would be thrown off. A ramp
 #: begins at the speed of the segment before it.
 INPUT_LAWS = (*LAWS, "constant", "ramp", "trapezoid")
@@ -99,20 +81,16 @@ def pieces_of(law: str) -> tuple[Piece, ...]:
         return (Piece(1.0, _POLYNOMIALS[law]),)
     found, place, speed = [], 0.0, 0.0
     for part in _ACCELERATIONS[law]:
-        a, w, p = part.amplitude, part.rate, part.phase
-        shift = (place + a * math.sin(p) / w**2, speed + a * math.cos(p) / w, part.constant / 2)
-        found.append(Piece(part.over, shift, (-a / w**2, w, p)))
+        (constant,), (a, w, p) = part.powers, part.sine
+        shift = (place + a * math.sin(p) / w**2, speed + a * math.cos(p) / w, constant / 2)
+        found.append((part.over, shift, (-a / w**2, w, p)))
         end = w * part.over + p
         place = shift[0] + shift[1] * part.over + shift[2] * part.over**2
         place -= a * math.sin(end) / w**2
-        speed += part.constant * part.over - a * (math.cos(end) - math.cos(p)) / w
+        speed += constant * part.over - a * (math.cos(end) - math.cos(p)) / w
     return tuple(
-        Piece(
-            piece.over,
-            tuple(c / place for c in piece.powers),
-            (piece.sine[0] / place, *piece.sine[1:]),
-        )
-        for piece in found
+        Piece(over, tuple(c / place for c in powers), (a / place, w, p))
+        for over, powers, (a, w, p) in found
     )
 
 
@@ -168,9 +146,6 @@ class LawSegment:
     values: tuple[Number, ...] = ()
 
     def __post_init__(self) -> None:
-        for name in ("times", "values"):
-            if is_listed(getattr(self, name)):
-                object.__setattr__(self, name, tuple(getattr(self, name)))
         check_values(self)
 
     def through(self, numbers: Numbers) -> tuple[tuple[float, float], ...]:
@@ -377,9 +352,6 @@ class Motor:
     torques: tuple[Number, ...] = ()
 
     def __post_init__(self) -> None:
-        for name in ("speeds", "torques"):
-            if is_listed(getattr(self, name)):
-                object.__setattr__(self, name, tuple(getattr(self, name)))
         check_values(self)
 
     @property
@@ -523,8 +495,6 @@ class Input:
     inertia: Number | None = None
 
     def __post_init__(self) -> None:
-        if self.law is not None and is_listed(self.law):
-            object.__setattr__(self, "law", tuple(self.law))
         check_values(self)
 
     @property

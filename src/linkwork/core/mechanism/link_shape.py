@@ -18,6 +18,7 @@ from linkwork.core.foundation.lanes import (
     degrees,
     detached,
     everywhere,
+    first_lanes,
     is_batched,
     is_steady,
     largest,
@@ -54,7 +55,7 @@ def least_norm(matrix: Sequence[Sequence[float]], right: Sequence[float]) -> Seq
     LinAlgError
         If the numbers are not finite.
     """
-    lanes = _lanes_in(matrix, right)
+    lanes = first_lanes(number for row in (*matrix, right) for number in row)
     if lanes is None:
         known, wanted = np.array(matrix), np.array(right)
         # LAPACK prints a line about such numbers
@@ -90,11 +91,6 @@ def independent(matrix: Sequence[Sequence[float]]) -> list[int]:
             found.append(k)
             base = np.vstack([base, rest / size])
     return found
-
-
-def _lanes_in(matrix: Sequence[Sequence[float]], right: Sequence[float]) -> Lanes | None:
-    numbers: list[object] = [number for row in (*matrix, right) for number in row]
-    return next((number for number in numbers if isinstance(number, Lanes)), None)
 
 
 def _stacked(matrix: Sequence[Sequence[float]], lanes: Lanes) -> Array:
@@ -135,11 +131,11 @@ class ShapeError(Exception):
 
 @dataclass(frozen=True)
 class Distance:
-    """|ab| = length + rest: the part that is lost where the length is rounded to a float."""
+    """|ab| = size + rest: the part that is lost where it is rounded to a float."""
 
     a: str
     b: str
-    length: float
+    size: float
     rest: float = 0.0
     table = "lengths"
 
@@ -153,22 +149,17 @@ class Distance:
 
     @property
     def amount_text(self) -> str:
-        return f"{self.length:.12g}"
+        return f"{self.size:.12g}"
 
     def error(self, z: Mapping[str, complex]) -> float:
         """Relative disagreement with placed points."""
-        return (abs(z[self.b] - z[self.a]) - self.length) / self.length
+        return (abs(z[self.b] - z[self.a]) - self.size) / self.size
 
     def precise_error(self, z: Mapping[str, Precise]) -> Precise:
         """The error near a shape that has none."""
-        span, length = z[self.b] - z[self.a], Precise(self.length, self.rest)
+        span, length = z[self.b] - z[self.a], Precise(self.size, self.rest)
         square = span.real * span.real + span.imag * span.imag
         return (square / (length * length) - 1.0) * 0.5
-
-    def agrees(self, z: Mapping[str, complex], tolerance: float) -> bool:
-        error = self.error(z)
-        # one that agrees by chance would no longer if a number changed
-        return abs(error) <= tolerance and is_steady(error)
 
     def shown(self, z: Mapping[str, complex]) -> str:
         return f"|{self.a}{self.b}| = {abs(z[self.b] - z[self.a]):.12g}"
@@ -177,7 +168,7 @@ class Distance:
         """The derivatives of the error by every point's x and, times i, by its y."""
         span = z[self.b] - z[self.a]
         size = abs(span)
-        slope = span / (size * self.length) if size else 0j
+        slope = span / (size * self.size) if size else 0j
         return {self.a: -slope, self.b: slope}
 
     def bend(self, z: Mapping[str, complex], point: str, move: complex) -> dict[str, complex]:
@@ -185,28 +176,21 @@ class Distance:
         span = z[self.b] - z[self.a]
         change = move if point == self.b else -move
         # i u Im(u* δ) / (|span| · length), u = span / |span|
-        slope = 1j * span * (span.conjugate() * change).imag / (abs(span) ** 3 * self.length)
+        slope = 1j * span * (span.conjugate() * change).imag / (abs(span) ** 3 * self.size)
         return {self.a: -slope, self.b: slope}
-
-    def narrow(self, rest: Rest) -> Distance:
-        return replace(self, length=rest.narrow(self.length), rest=rest.narrow(self.rest))
-
-    def detached(self) -> Distance:
-        length = detached(self.length)
-        return self if length is self.length else replace(self, length=length)
 
 
 @dataclass(frozen=True)
 class VertexAngle:
     """The angle [rad] at ``vertex``, counter-clockwise from the ray to ``a`` to that to ``b``.
 
-    It is ``angle`` + ``rest``.
+    It is ``size`` + ``rest``.
     """
 
     a: str
     vertex: str
     b: str
-    angle: float
+    size: float
     rest: float = 0.0
     table = "angles"
 
@@ -220,24 +204,19 @@ class VertexAngle:
 
     @property
     def amount_text(self) -> str:
-        return f"{degrees(self.angle):.12g}°"
+        return f"{degrees(self.size):.12g}°"
 
     def error(self, z: Mapping[str, complex]) -> float:
         """Disagreement with placed points [rad], within half a turn."""
         rays = (z[self.b] - z[self.vertex]) * (z[self.a] - z[self.vertex]).conjugate()
         # the difference as a rotation has no jump at half a turn
-        return phase(rays * cis(-self.angle)) if rays else math.inf
+        return phase(rays * cis(-self.size)) if rays else math.inf
 
     def precise_error(self, z: Mapping[str, Precise]) -> Precise:
         """The error near a shape that has none [rad]."""
         rays = (z[self.b] - z[self.vertex]) * (z[self.a] - z[self.vertex]).conjugate()
-        sine, cosine = sin_cos(Precise(self.angle, self.rest))
+        sine, cosine = sin_cos(Precise(self.size, self.rest))
         return (rays.imag * cosine - rays.real * sine) / abs(rays)
-
-    def agrees(self, z: Mapping[str, complex], tolerance: float) -> bool:
-        error = self.error(z)
-        # one that agrees by chance would no longer if a number changed
-        return abs(error) <= tolerance and is_steady(error)
 
     def shown(self, z: Mapping[str, complex]) -> str:
         rays = (z[self.b] - z[self.vertex]) * (z[self.a] - z[self.vertex]).conjugate()
@@ -262,23 +241,23 @@ class VertexAngle:
         to_b = -1j * turns[1].conjugate() / second.conjugate() ** 2
         return {self.a: to_a, self.vertex: -(to_a + to_b), self.b: to_b}
 
-    def narrow(self, rest: Rest) -> VertexAngle:
-        return replace(self, angle=rest.narrow(self.angle), rest=rest.narrow(self.rest))
-
-    def detached(self) -> VertexAngle:
-        angle = detached(self.angle)
-        return self if angle is self.angle else replace(self, angle=angle)
-
 
 Given = Distance | VertexAngle
+
+
+def agrees(row: Given, z: Mapping[str, complex], tolerance: float) -> bool:
+    """Whether placed points have a dimension."""
+    error = row.error(z)
+    # one that agrees by chance would no longer if a number changed
+    return abs(error) <= tolerance and is_steady(error)
 
 
 def fits(row: Given, z: Mapping[str, Precise], tolerance: float) -> bool:
     """Whether placed points have a dimension, in numbers as exact as they are."""
     rounded = {p: place.high for p, place in z.items()}
     if not all(place.has_rest for place in z.values()):
-        return row.agrees(rounded, max(tolerance, _ROUNDED))
-    return row.agrees(rounded, AGREE) and abs(row.precise_error(z).high) <= tolerance
+        return agrees(row, rounded, max(tolerance, _ROUNDED))
+    return agrees(row, rounded, AGREE) and abs(row.precise_error(z).high) <= tolerance
 
 
 def compared(row: Given, z: Mapping[str, Precise]) -> str:
@@ -318,7 +297,7 @@ def nearest_shape(
     start = {p: detached(sketch[p]) for p in points}
     given = rows
     rows, missing = _determining(points, given)
-    held = _detached(rows)
+    held = list(map(_detached, rows))
     placed = _gauss_newton(start, held, _MOST_STEPS)
     varies = any(own is not row for own, row in zip(held, rows, strict=True))
     if missing:
@@ -328,7 +307,7 @@ def nearest_shape(
         errors = [row.error(placed) for row in rows]
         placed = _moved(placed, least_norm(_slopes(placed, held), errors))
     found = {p: Precise(place) for p, place in placed.items()}
-    wrong = [row for row in rows if not row.agrees(placed, AGREE)]
+    wrong = [row for row in rows if not agrees(row, placed, AGREE)]
     if not wrong:
         found = _polished(placed, rows) if rows else dict(exact)
         wrong = [row for row in rows if not fits(row, found, _HELD)]
@@ -476,9 +455,14 @@ def _moved(z: Mapping[str, complex], step: Sequence[float]) -> dict[str, complex
     return {p: place - vector(step[k], step[k + count]) for k, (p, place) in enumerate(z.items())}
 
 
-def _detached(rows: Sequence[Given]) -> list[Given]:
-    """Dimensions without the derivatives of their numbers."""
-    return [row.detached() for row in rows]
+def _detached(row: Given) -> Given:
+    """A dimension without the derivatives of its number."""
+    size = detached(row.size)
+    return row if size is row.size else replace(row, size=size)
+
+
+def _narrow(row: Given, rest: Rest) -> Given:
+    return replace(row, size=rest.narrow(row.size), rest=rest.narrow(row.rest))
 
 
 def _gone_on(
@@ -487,7 +471,7 @@ def _gone_on(
     """Further steps of the designs that have not converged."""
     own = {point: rest.narrow(place) for point, place in z.items()}
     try:
-        found = _gauss_newton(own, [row.narrow(rest) for row in rows], steps, first=steps)
+        found = _gauss_newton(own, [_narrow(row, rest) for row in rows], steps, first=steps)
     finally:
         rest.leave()
     return {point: rest.widen(place, found[point]) for point, place in z.items()}
@@ -554,7 +538,7 @@ class _Placing:
             if point not in (v.a, v.b) or not {v.vertex, other} <= self.z.keys():
                 continue
             ray = self.z[other] - self.z[v.vertex]
-            sine, cosine = sin_cos(Precise(v.angle, v.rest))
+            sine, cosine = sin_cos(Precise(v.size, v.rest))
             turn = joined(cosine, sine if v.b == point else -sine)
             return v.vertex, turn * (ray / abs(ray))
         return None
@@ -668,11 +652,11 @@ def place(
     if len(measured) != lacks:
         measured = []
     for d in measured:
-        if not d.length:
+        if not d.size:
             raise ShapeError(
                 f"{d.a} and {d.b} are sketched at the same place: give {d.key} a length"
             )
-    known = {frozenset(d.points): Precise(d.length, d.rest) for d in (*distances, *measured)}
+    known = {frozenset(d.points): Precise(d.size, d.rest) for d in (*distances, *measured)}
     state = _Placing(points, seen, known, vertices, measured)
     placed = (lacks <= 0 or bool(measured)) and state.place_all()
     if placed and all(fits(g, state.z, REDUNDANT) for g in given):
@@ -818,7 +802,7 @@ def _check_ground(
                 raise _same_point(*sorted((other, point), key=list(sketch).index))
     dimensions: list[Distance | VertexAngle] = [*distances, *vertices]
     for given in dimensions:
-        if not given.agrees(sketch, AGREE):
+        if not agrees(given, sketch, AGREE):
             raise ShapeError(
                 f"ground coordinates are exact and give {given.shown(sketch)}, "
                 f"not {given.amount_text}: change [points] or leave this out",
@@ -832,7 +816,7 @@ def _same_point(first: str, second: str) -> ShapeError:
 
 
 def _measured(link: str, shape: LinkShape, linkage: Bodies, problems: Problems) -> list[Measured]:
-    found = [Measured(link=link, points=(d.a, d.b), length=d.length) for d in shape.measured]
+    found = [Measured(link=link, points=(d.a, d.b), length=d.size) for d in shape.measured]
     if linkage.sketch and found:
         wanted = ", ".join(f'"{m.points[0]} {m.points[1]}"' for m in found)
         problems.add(

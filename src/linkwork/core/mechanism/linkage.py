@@ -11,7 +11,7 @@ from itertools import combinations, pairwise
 from typing import Any, Self
 
 from linkwork.core.foundation.containers import FrozenDict
-from linkwork.core.foundation.errors import ExpressionError, choices
+from linkwork.core.foundation.errors import ExpressionError, choices, undefined
 from linkwork.core.foundation.lanes import phase
 from linkwork.core.foundation.names import GROUND, canonical
 from linkwork.core.mechanism.bodies import Measured, Shapes
@@ -93,15 +93,7 @@ def check_linkage(linkage: JoinedBodies, problems: Problems) -> None:
     _check_inputs(linkage, problems)
     for k, point in enumerate(linkage.trace):
         if point not in linkage.points:
-            problems.add(("trace", "points", k), _no_point(linkage, point))
-
-
-def _no_point(linkage: JoinedBodies, point: str) -> str:
-    return f'point "{point}" is not defined {choices("points", linkage.points, point)}'
-
-
-def _no_link(linkage: JoinedBodies, link: str) -> str:
-    return f'link "{link}" is not defined {choices("links", linkage.links, link)}'
+            problems.add(("trace", "points", k), undefined("point", point, linkage.points))
 
 
 def _check_points(linkage: JoinedBodies, problems: Problems) -> None:
@@ -118,7 +110,7 @@ def _check_points(linkage: JoinedBodies, problems: Problems) -> None:
             problems.add(("points", point), f"needs two coordinates, got {len(coordinates)}")
             continue
         for number in coordinates:
-            PartChecks(linkage, problems, ("points", point)).length(number)
+            PartChecks(linkage, problems, ("points", point)).amount(number)
         if point not in carried:
             problems.add(("points", point), "is on no link: add it to a link or remove it")
 
@@ -132,7 +124,7 @@ def _check_links(linkage: JoinedBodies, problems: Problems) -> None:
         key = ("links", link)
         for point in points:
             if point not in linkage.points:
-                problems.add(key, _no_point(linkage, point))
+                problems.add(key, undefined("point", point, linkage.points))
         repeated = {point for point in points if points.count(point) > 1}
         if repeated:
             problems.add(key, f"names {', '.join(sorted(repeated))} more than once")
@@ -215,7 +207,7 @@ def _check_dimension_keys(linkage: JoinedBodies, problems: Problems) -> None:
                 continue
             missing = [name for name in names if name not in linkage.points]
             if missing:
-                problems.add(key, _no_point(linkage, missing[0]))
+                problems.add(key, undefined("point", missing[0], linkage.points))
             elif not (misspelt or set.intersection(*(links_at.get(name, set()) for name in names))):
                 what = "a distance" if count == 2 else "an angle"
                 problems.add(
@@ -224,7 +216,7 @@ def _check_dimension_keys(linkage: JoinedBodies, problems: Problems) -> None:
             if table == "angles":
                 linkage.numbers.check_number(problems.add, key, number)
                 continue
-            amount = PartChecks(linkage, problems, key).length(number)
+            amount = PartChecks(linkage, problems, key).amount(number)
             if amount <= 0:
                 problems.add(key, f"must be a positive length, got {amount:g}")
             elif amount < _SMALLEST:
@@ -286,7 +278,7 @@ def _check_angle_input(
         return None  # reported at [links]
     for key_word, name in (("link", link), ("relative_to", against)):
         if name not in linkage.links:
-            problems.add((*key, key_word), _no_link(linkage, name))
+            problems.add((*key, key_word), undefined("link", name, linkage.links))
             return None
     if link == GROUND:
         problems.add((*key, "link"), "ground is fixed: drive another link")
@@ -301,7 +293,7 @@ def _check_joint_input(
     linkage: JoinedBodies, joint: str, key: Key, problems: Problems
 ) -> tuple[str, ...] | None:
     if joint not in linkage.points:
-        problems.add((*key, "joint"), _no_point(linkage, joint))
+        problems.add((*key, "joint"), undefined("point", joint, linkage.points))
         return None
     links = list(linkage.bodies_at(joint))
     if len(links) != 2:

@@ -6,7 +6,7 @@ from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
 
 from linkwork.core.foundation.containers import FrozenDict
-from linkwork.core.foundation.errors import ExpressionError, InputError, choices
+from linkwork.core.foundation.errors import ExpressionError, InputError, undefined
 from linkwork.core.foundation.names import GROUND, canonical
 from linkwork.core.foundation.units import FORCES, LENGTHS, MASSES
 from linkwork.core.foundation.values import as_told
@@ -43,9 +43,7 @@ class LoadedBodies(Description):
         if given is not None and not isinstance(given, Gravity):
             raise InputError(f"gravity must be lw.Gravity(…), got {as_told(given)}")
         check_entries("masses", Mass, self.masses.values())
-        object.__setattr__(self, "masses", FrozenDict.of(self.masses))
         check_entries("stops", Stop, self.stops)
-        object.__setattr__(self, "stops", tuple(self.stops))
 
     @property
     def carried(self) -> Mapping[str, tuple[str, ...]]:
@@ -91,7 +89,7 @@ def check_masses(loaded: LoadedBodies, problems: Problems) -> None:
         key = ("masses", link)
         if link not in loaded.carried:
             known_links = [name for name in loaded.carried if name != GROUND]
-            problems.add(key, f'link "{link}" is not defined {choices("links", known_links, link)}')
+            problems.add(key, undefined("link", link, known_links))
             continue
         if link == GROUND:
             problems.add(key, "is fixed: its mass has no effect, remove it")

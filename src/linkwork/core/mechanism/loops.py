@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from functools import partial
 
 from linkwork.core.foundation.containers import FrozenDict
-from linkwork.core.foundation.errors import choices
+from linkwork.core.foundation.errors import choices, undefined
 from linkwork.core.foundation.names import canonical
 from linkwork.core.mechanism.description import Description, Key, Problems, check_entries, declared
 from linkwork.core.mechanism.dimensions import Number
@@ -20,10 +20,6 @@ class _Equations(Description):
     """The common base of both forms: unknowns with a guess, one or more input variables."""
 
     guess: Mapping[str, Number] = FrozenDict()
-
-    def __post_init__(self) -> None:
-        super().__post_init__()
-        object.__setattr__(self, "guess", FrozenDict.of(self.guess))
 
     def _check_guess(self, problems: Problems) -> None:
         for name, number in self.guess.items():
@@ -76,8 +72,6 @@ class Loops(_Equations, LoadedBodies):
     def __post_init__(self) -> None:
         super().__post_init__()
         set_ = object.__setattr__
-        set_(self, "loops", FrozenDict.of(self.loops))
-        set_(self, "points", FrozenDict.of(self.points))
         spelled = {canonical(name): name for name in self.points}
 
         def same(name: str) -> str:
@@ -109,12 +103,10 @@ class Loops(_Equations, LoadedBodies):
         for link, points in self.links.items():
             for point in points:
                 if point not in self.points:
-                    known = choices("points", self.points, point)
-                    problems.add(("links", link), f'point "{point}" is not defined {known}')
+                    problems.add(("links", link), undefined("point", point, self.points))
         for k, point in enumerate(self.trace):
             if point not in self.points:
-                known = choices("points", self.points, point)
-                problems.add(("trace", "points", k), f'point "{point}" is not defined {known}')
+                problems.add(("trace", "points", k), undefined("point", point, self.points))
         check_masses(self, problems)
         for k, load in enumerate(self.loads):
             load.check_in(self, partial(_add, problems, ("loads", k)))
@@ -166,7 +158,6 @@ class PlainEquations(_Equations):
 
     def __post_init__(self) -> None:
         super().__post_init__()
-        object.__setattr__(self, "equations", FrozenDict.of(self.equations))
         problems = Problems()
         self.check_common(problems, declared("guess", self.guess))
         self._check_guess(problems)

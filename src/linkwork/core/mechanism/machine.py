@@ -5,8 +5,6 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import dataclass
 
-import numpy as np
-
 from linkwork.core.foundation.errors import ExpressionError, internal
 from linkwork.core.foundation.units import LENGTHS
 from linkwork.core.foundation.values import (
@@ -16,7 +14,6 @@ from linkwork.core.foundation.values import (
     NumberValue as NumberKey,
     Text,
     check_values,
-    is_listed,
 )
 from linkwork.core.mechanism.dimensions import Number, Numbers
 
@@ -71,9 +68,6 @@ class Mass:
     shape: str | None = None
 
     def __post_init__(self) -> None:
-        given: object = self.center
-        if isinstance(given, np.ndarray | list) and is_listed(given):
-            object.__setattr__(self, "center", tuple(given))
         check_values(self)
 
 

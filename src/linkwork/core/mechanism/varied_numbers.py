@@ -160,12 +160,10 @@ def _changed(description: Description, table: str, changes: Mapping[str, Any]) -
 # Deviations of a mechanism's numbers, and clearances of its pins.
 
 
+_DEVIATION = Key("deviation", NumberValue("varied"), "Its standard deviation", required=True)
 TOLERANCES = Key(
     "tolerances",
-    Named(
-        Table((Key("deviation", NumberValue("varied"), "Its standard deviation", required=True),)),
-        0,
-    ),
+    Named(Table((_DEVIATION,), made=lambda deviation: deviation), 0),
     'How much numbers deviate: "A B" = { deviation = 0.05 }',
 )
 CLEARANCES = Key(

@@ -6,8 +6,9 @@ The reader's checks (:mod:`~linkwork.core.textfile.structure`) and the published
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass
+from typing import Any
 
 from linkwork.core.foundation.units import FORCES, MASSES
 from linkwork.core.foundation.values import (
@@ -25,9 +26,20 @@ from linkwork.core.foundation.values import (
     TablesOrFormula,
     Text,
 )
-from linkwork.core.mechanism.description import HIDDEN
-from linkwork.core.mechanism.inputs import LAW_KEYS, MOTOR_KEYS
-from linkwork.core.mechanism.machine import FRICTION_KEYS, GRAVITY_KEYS, MASS_KEYS, STOP_KEYS
+from linkwork.core.mechanism.description import HIDDEN, Question
+from linkwork.core.mechanism.inputs import LAW_KEYS, MOTOR_KEYS, Input, LawSegment, Motor
+from linkwork.core.mechanism.linkage import Linkage
+from linkwork.core.mechanism.loops import Loops, PlainEquations
+from linkwork.core.mechanism.machine import (
+    FRICTION_KEYS,
+    GRAVITY_KEYS,
+    MASS_KEYS,
+    STOP_KEYS,
+    Friction,
+    Gravity,
+    Mass,
+    Stop,
+)
 from linkwork.core.mechanism.part.index import PARTS
 from linkwork.core.mechanism.part.springs import Load
 from linkwork.core.mechanism.varied_numbers import CLEARANCES, TOLERANCES
@@ -38,12 +50,16 @@ FORMAT = 1
 
 @dataclass(frozen=True)
 class Form:
-    """A kind of file: its keys, and the table ``marker`` that identifies it, if any."""
+    """A kind of file: its keys, and the table ``marker`` that identifies it, if any.
+
+    ``made`` makes a description of its values.
+    """
 
     title: str
     doc: str
     marker: str
     keys: tuple[Key, ...]
+    made: Callable[..., Any] = dict
 
     @property
     def definition(self) -> str:
@@ -63,6 +79,7 @@ _HEAD = (
     Key("name", Text(), "Name of the mechanism"),
     Key("length", Text(), "Unit of every length in this file; nothing is converted"),
     Key("angle", Text(("deg", "rad")), "Unit of every angle in this file"),
+    Key("purpose", Text(), "What the mechanism is for, in one sentence"),
     Key("source", Text(), "Where the mechanism comes from: book, page, drawing"),
     Key("family", Text(), 'The family in lists of mechanisms: "straight line", "engine"'),
     Key(
@@ -71,7 +88,6 @@ _HEAD = (
         'The configuration or branch to start from instead of the guess: "crossed", '
         '"circuit 1 branch 2"',
     ),
-    Key("purpose", Text(), "What the mechanism is for, in one sentence"),
 )
 _DIMENSIONS = Key(
     "dimensions",
@@ -85,7 +101,10 @@ _OUTPUTS = Key(
 )
 _TRACE = Key(
     "trace",
-    Table((Key("points", _POINT_LIST, "Points whose paths are drawn", required=True),)),
+    Table(
+        (Key("points", _POINT_LIST, "Points whose paths are drawn", required=True),),
+        made=lambda points: points,
+    ),
     "Traces in pictures",
 )
 _FORCE_UNITS = (
@@ -93,13 +112,13 @@ _FORCE_UNITS = (
     Key("force", Text(tuple(FORCES)), "Unit of every force in this file; default N"),
 )
 _MASSES = (
-    Key("gravity", Table(GRAVITY_KEYS), "Gravity: size and direction; none unless given"),
-    Key("masses", Named(Table(MASS_KEYS)), "Masses of links: crank = { mass = 1.2, … }"),
-    Key("stops", Tables(STOP_KEYS), "Bounds of quantities in simulations"),
+    Key("gravity", Table(GRAVITY_KEYS, Gravity), "Gravity: size and direction; none unless given"),
+    Key("masses", Named(Table(MASS_KEYS, Mass)), "Masses of links: crank = { mass = 1.2, … }"),
+    Key("stops", Tables(STOP_KEYS, made=Stop), "Bounds of quantities in simulations"),
 )
 _FRICTION = Key(
     "friction",
-    Named(Table(FRICTION_KEYS)),
+    Named(Table(FRICTION_KEYS, Friction)),
     "Friction of pins and parts: A = { mu = 0.1, radius = 5 }",
 )
 _QUESTIONS = Key(
@@ -127,7 +146,8 @@ _QUESTIONS = Key(
                 ListOf(Text(HIDDEN), "word"),
                 "What a page hides until the question is answered; default all but equations",
             ),
-        )
+        ),
+        made=Question,
     ),
     "Questions asked on pages; answers are computed, and hidden until they are asked for",
 )
@@ -138,7 +158,12 @@ _GUESS = Key(
     required=True,
 )
 _RANGE = (
-    Key("from", NumberValue("ranged"), "First input value; with a law the first time [s]"),
+    Key(
+        "from",
+        NumberValue("ranged"),
+        "First input value; with a law the first time [s]",
+        field="from_",
+    ),
     Key("to", NumberValue("ranged"), "Last input value; with a law the last time [s]"),
     Key(
         "step",
@@ -152,13 +177,13 @@ _RANGE = (
     ),
     Key(
         "law",
-        TablesOrFormula(LAW_KEYS),
+        TablesOrFormula(LAW_KEYS, LawSegment),
         "How the input moves in time: segments from t = 0, or a formula of t",
     ),
     Key(
         "begin", NumberValue("driven"), "With segments: input value at t = 0; default: the sketch's"
     ),
-    Key("motor", Table(MOTOR_KEYS), "What drives the input in simulations"),
+    Key("motor", Table(MOTOR_KEYS, Motor), "What drives the input in simulations"),
     Key("inertia", NumberValue("area"), "Flywheel on the input in simulations"),
 )
 _DRIVES = (
@@ -177,6 +202,12 @@ _VARIABLE = (
     Key("variable", Text(), "The driven variable of the equations", required=True),
     *_RANGE,
 )
+
+
+def _input(keys: tuple[Key, ...], doc: str) -> Key:
+    return Key("input", Tables(keys, single=True, made=Input), doc, field="inputs")
+
+
 LINKAGE = Form(
     "points-and-links",
     "A mechanism given by points and links",
@@ -204,16 +235,17 @@ LINKAGE = Form(
             Named(NumberValue("angle"), 3),
             'Exact angles in one link: "B A P" = 30, at A from AB to AP, counter-clockwise',
         ),
-        *(Key(name, Tables(kind.keys), kind.doc) for name, kind in PARTS.items()),
+        *(Key(name, Tables(kind.keys, made=kind), kind.doc) for name, kind in PARTS.items()),
         *_MASSES,
         _FRICTION,
-        Key("input", Tables(_DRIVES, single=True), "The driven quantity and its range"),
+        _input(_DRIVES, "The driven quantity and its range"),
         TOLERANCES,
         CLEARANCES,
         _TRACE,
         _OUTPUTS,
         _QUESTIONS,
     ),
+    Linkage,
 )
 LOOPS = Form(
     "loops",
@@ -230,9 +262,8 @@ LOOPS = Form(
             required=True,
         ),
         _GUESS,
-        Key(
-            "input",
-            Tables(_VARIABLE, single=True),
+        _input(
+            _VARIABLE,
             'The driven variable: variable = "theta2"; without it the loops describe a structure',
         ),
         Key(
@@ -246,12 +277,13 @@ LOOPS = Form(
             'Points drawn as one link: crank = ["A0", "A"]; "ground" is fixed',
         ),
         *_MASSES,
-        Key("loads", Tables(Load.keys), Load.doc),
+        Key("loads", Tables(Load.keys, made=Load), Load.doc),
         TOLERANCES,
         _TRACE,
         _OUTPUTS,
         _QUESTIONS,
     ),
+    Loops,
 )
 EQUATIONS = Form(
     "plain-equations",
@@ -267,11 +299,12 @@ EQUATIONS = Form(
             required=True,
         ),
         _GUESS,
-        Key("input", Tables(_VARIABLE, single=True), 'The driven variable: variable = "x"'),
+        _input(_VARIABLE, 'The driven variable: variable = "x"'),
         TOLERANCES,
         _OUTPUTS,
         _QUESTIONS,
     ),
+    PlainEquations,
 )
 FORMS = (LINKAGE, LOOPS, EQUATIONS)
 

@@ -116,7 +116,7 @@ def text_of_link(link: str) -> str:
         )
     if len(after) >= LONGEST:
         _refuse(f"has {len(after) + 1:,} characters: at most {LONGEST:,} are read")
-    return _text(_unpacked(_bytes(after[found.end() :])))
+    return _unpacked(_bytes(after[found.end() :]))
 
 
 def source_text(given: str) -> tuple[str, str]:
@@ -175,27 +175,16 @@ def _bytes(code: str) -> bytes:
     return packed
 
 
-def _unpacked(packed: bytes) -> bytes:
-    """The bytes of the text; inflating stops at the largest size of a file."""
+def _unpacked(packed: bytes) -> str:
+    """The text of the file; inflating stops at the largest size of a file."""
     inflater = zlib.decompressobj(-15, _words())
     try:
         data = inflater.decompress(packed, LARGEST + 1)
-    except zlib.error:
-        _refuse("is damaged: its code cannot be unpacked")
-    if len(data) > LARGEST:
-        _refuse(f"unpacks to more than {LARGEST / 1e6:.0f} MB: more is not read")
-    if not inflater.eof:
-        _refuse("is damaged: its code ends in the middle of the mechanism")
-    if inflater.unused_data:
-        _refuse(f"is damaged: {len(inflater.unused_data)} bytes follow the mechanism")
-    return data
-
-
-def _text(data: bytes) -> str:
-    try:
+        if len(data) > LARGEST:
+            _refuse(f"unpacks to more than {LARGEST / 1e6:.0f} MB: more is not read")
         text = data.decode("utf-8")
-    except UnicodeDecodeError as error:
-        _refuse(f"is damaged: byte {error.start} (0x{data[error.start]:02x}) is not UTF-8")
-    if "\0" in text:
-        _refuse("contains a NUL character: not a text file")
+    except (zlib.error, UnicodeDecodeError):
+        text = "\0"
+    if "\0" in text or not inflater.eof or inflater.unused_data:
+        _refuse("is damaged: its code is not that of a mechanism file")
     return text

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Iterable, Set
+from collections.abc import Iterable, Mapping, Set
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -16,19 +16,21 @@ from linkwork.core.foundation.errors import (
     choices,
 )
 from linkwork.core.foundation.names import as_name
-from linkwork.core.mechanism.description import Question
-from linkwork.core.mechanism.inputs import Input, LawSegment, Motor
+from linkwork.core.foundation.values import (
+    Constant,
+    Key,
+    Kind,
+    ListOf,
+    Named,
+    Table,
+    Tables,
+    TablesOrFormula,
+)
 from linkwork.core.mechanism.linkage import Draft, Linkage
 from linkwork.core.mechanism.loops import Loops, PlainEquations
-from linkwork.core.mechanism.machine import Friction, Gravity, Mass, Stop
-from linkwork.core.mechanism.part.index import PARTS
-from linkwork.core.mechanism.part.springs import Load
-from linkwork.core.textfile.keys import EQUATIONS, FORMAT, LINKAGE, LOOPS, Form, form_of
+from linkwork.core.textfile.keys import FORMAT, LINKAGE, form_of
 from linkwork.core.textfile.structure import Structure
 from linkwork.core.textfile.toml_text import Lines, bytes_of, data_of, text_of
-
-#: Keys that are words of Python.
-_RENAMED = {"from": "from_"}
 
 #: Tables that only mechanisms have.
 _DESCRIBED = ("points", "links", "loops", "equations")
@@ -109,7 +111,7 @@ def read_text(text: str, name: str = "the text") -> ReadFile:
     if structure.lost <= _LEAVES:
         kept = {key: entry for key, entry in structure.content.items() if key not in structure.lost}
         try:
-            description = _description(kept, form)
+            description = form.made(**_fields(kept, form.keys))
         except MechanismError as error:
             # a table with a structural problem is not reported twice
             problems += [p for p in error.problems if p.key[:1] not in lost]
@@ -158,7 +160,7 @@ def read_draft(text: str, name: str = "the text") -> DraftFile:
     if form is not LINKAGE:
         raise located_error(structure.problems, lines, name)
     kept = _without(structure.problems, structure.content, structure.lost)
-    draft = Draft(**_common_fields(kept), **_linkage_fields(kept))
+    draft = Draft(**_fields(kept, form.keys))
     lost = {(key,) for key in structure.lost}
     found = [*structure.problems, *(p for p in draft.problems if p.key[:1] not in lost)]
     return DraftFile(draft=draft, problems=tuple(located_error(found, lines, name).problems))
@@ -196,66 +198,26 @@ def check_kind(data: dict[str, Any], lines: Lines, name: str, *, task: bool) -> 
     raise located_error([Problem(key=(marks[0],), message=told)], lines, name)
 
 
-def _description(content: dict[str, Any], form: Form) -> Linkage | Loops | PlainEquations:
-    """The mechanism described by the checked content of a file."""
-    fields = _common_fields(content)
-    if form is LOOPS:
-        own = {key: content.get(key, {}) for key in ("loops", "guess", "points", "links")}
-        loads = tuple(map(Load.of_table, content.get("loads", ())))
-        return Loops(**fields, **own, **_masses(content), loads=loads)
-    if form is EQUATIONS:
-        return PlainEquations(**fields, equations=content["equations"], guess=content["guess"])
-    return Linkage(**fields, **_linkage_fields(content))
+def _fields(content: Mapping[str, Any], keys: Iterable[Key]) -> dict[str, Any]:
+    """The checked values of a table by the fields of the object that it describes."""
+    known = {key.name: key for key in keys if not isinstance(key.kind, Constant)}
+    kept = {known[name]: entry for name, entry in content.items() if name in known}
+    return {key.attribute: _made(entry, key.kind) for key, entry in kept.items()}
 
 
-def _common_fields(content: dict[str, Any]) -> dict[str, Any]:
-    fields: dict[str, Any] = {
-        key: content[key]
-        for key in (
-            "name",
-            "purpose",
-            "length",
-            "angle",
-            "source",
-            "family",
-            "configuration",
-            "dimensions",
-            "outputs",
-        )
-        if key in content
-    }
-    fields["inputs"] = tuple(map(_input, content.get("input", ())))
-    fields["questions"] = tuple(map(_question, content.get("questions", ())))
-    deviations = content.get("tolerances", {}).items()
-    fields["tolerances"] = {name: table["deviation"] for name, table in deviations}
-    fields["trace"] = tuple(content.get("trace", {}).get("points", ()))
-    return fields
-
-
-def _linkage_fields(content: dict[str, Any]) -> dict[str, Any]:
-    named = ("points", "links", "lengths", "angles", "clearances")
-    tables = {key: content.get(key, {}) for key in named}
-    parts = {
-        table: tuple(map(kind.of_table, content.get(table, ()))) for table, kind in PARTS.items()
-    }
-    friction = {name: Friction(**own) for name, own in content.get("friction", {}).items()}
-    return {
-        **tables,
-        **parts,
-        **_masses(content),
-        "friction": friction,
-        "sketch": content.get("sketch", False),
-    }
-
-
-def _masses(content: dict[str, Any]) -> dict[str, Any]:
-    """Units of masses and forces, gravity, and the masses of links."""
-    found: dict[str, Any] = {key: content[key] for key in ("mass", "force") if key in content}
-    if "gravity" in content:
-        found["gravity"] = Gravity(**content["gravity"])
-    found["stops"] = tuple(map(_stop, content.get("stops", ())))
-    masses = content.get("masses", {}).items()
-    return {**found, "masses": {link: Mass(**table) for link, table in masses}}
+def _made(entry: Any, kind: Kind) -> Any:
+    """A checked value as the object that it describes; lists become tuples."""
+    match kind:
+        case Table(keys, made):
+            return made(**_fields(entry, keys))
+        case Tables() | TablesOrFormula() if not isinstance(entry, str):
+            return tuple(kind.made(**_fields(each, kind.keys)) for each in entry)
+        case Named(of):
+            return {name: _made(each, of) for name, each in entry.items()}
+        case ListOf(of):
+            return tuple(_made(each, of) for each in entry)
+        case _:
+            return entry
 
 
 def _without(
@@ -269,24 +231,6 @@ def _without(
             named = content[key].items()
             kept[key] = {name: entry for name, entry in named if (key, name) not in wrong}
     return kept
-
-
-def _question(table: dict[str, Any]) -> Question:
-    listed = {key: tuple(entry) for key, entry in table.items() if key == "hide"}
-    return Question(**{**table, **listed})
-
-
-def _stop(table: dict[str, Any]) -> Stop:
-    return Stop(**{_RENAMED.get(key, key): entry for key, entry in table.items()})
-
-
-def _input(table: dict[str, Any]) -> Input:
-    fields = {_RENAMED.get(key, key): entry for key, entry in table.items()}
-    if isinstance(fields.get("law"), list):
-        fields["law"] = tuple(LawSegment(**segment) for segment in fields["law"])
-    if "motor" in fields:
-        fields["motor"] = Motor(**fields["motor"])
-    return Input(**fields)
 
 
 # ----------------------------------------------------------------------

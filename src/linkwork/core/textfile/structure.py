@@ -74,11 +74,10 @@ class Structure:
         # a key of another kind of file is not a spelling mistake
         others = [form for form in forms if name in _names_in_form(form, path)]
         free = [key for key in known if key not in present]
+        titles = " and ".join(f"{form.title} files" for form in others)
         if others and not path:
-            titles = " and ".join(f"{form.title} files" for form in others)
             message = f"belongs to {titles}, but this is a {self.form.title} file{_why(self.form)}"
         elif others:
-            titles = " and ".join(f"{form.title} files" for form in others)
             message = f"belongs to {titles} {choices(f'keys of {table} here', known, name)}"
         else:
             message = f"is not a key of {table} {choices('keys', known, name)}"
@@ -93,10 +92,14 @@ class Structure:
                 self._wrong(path, f"is the unit, a text in quotes: name the table [{path[-1]}s]")
             case Table(keys):
                 return self._sub_table(entry, keys, path)
-            case Tables():
-                return self._tables(entry, kind, path)
+            case Tables(keys, True) if isinstance(entry, dict):
+                return [self._table(entry, keys, path)]
+            case Tables(keys, single):
+                wanted = f"[{path[-1]}] or [[{path[-1]}]]" if single else f"[[{path[-1]}]]"
+                return self._tables(entry, keys, f"written as {wanted}", path)
             case TablesOrFormula(keys) if not isinstance(entry, str):
-                return self._listed_tables(entry, keys, path)
+                wanted = f"a formula in quotes or a list of tables, {path[-1]} = [{{ … }}, …]"
+                return self._tables(entry, keys, wanted, path)
             case Named():
                 return self._named(entry, kind, path)
             case ListOf():
@@ -169,20 +172,10 @@ class Structure:
         self._wrong(path, f"must be a table {_table_text(path)}, got {_shown(entry)}")
         return {}
 
-    def _tables(self, entry: Any, kind: Tables, path: KeyPath) -> list[dict[str, Any]]:
-        if isinstance(entry, dict) and kind.single:
-            return [self._table(entry, kind.keys, path)]
-        if not isinstance(entry, list) or not all(isinstance(each, dict) for each in entry):
-            wanted = f"[[{path[-1]}]]" if not kind.single else f"[{path[-1]}] or [[{path[-1]}]]"
-            self._wrong(path, f"must be written as {wanted}, got {_shown(entry)}")
-            return []
-        return [self._table(each, kind.keys, (*path, k)) for k, each in enumerate(entry)]
-
-    def _listed_tables(
-        self, entry: Any, keys: tuple[Key, ...], path: KeyPath
+    def _tables(
+        self, entry: Any, keys: tuple[Key, ...], wanted: str, path: KeyPath
     ) -> list[dict[str, Any]]:
         if not isinstance(entry, list) or not all(isinstance(each, dict) for each in entry):
-            wanted = f"a formula in quotes or a list of tables, {path[-1]} = [{{ … }}, …]"
             self._wrong(path, f"must be {wanted}, got {_shown(entry)}")
             return []
         return [self._table(each, keys, (*path, k)) for k, each in enumerate(entry)]

@@ -321,10 +321,8 @@ def bytes_of(path: Path, name: str, most: int = LARGEST) -> bytes:
             return data
     except FileNotFoundError:
         _refuse(name, f"there is no such file {_files_beside(path)}")
-    except IsADirectoryError:
-        _refuse(name, f"is a folder: name one file in it {_files_beside(path / 'x')}")
     except (OSError, ValueError) as error:
-        if os.path.isdir(path):  # opening a folder is a PermissionError on Windows
+        if os.path.isdir(path):
             _refuse(name, f"is a folder: name one file in it {_files_beside(path / 'x')}")
         reason = (error.strerror if isinstance(error, OSError) else None) or str(error)
         _refuse(name, f"cannot be read: {reason}")
@@ -396,28 +394,21 @@ def data_of(text: str, name: str) -> dict[str, Any]:
 def _check_limits(tokens: Tokens, name: str) -> None:
     """Reject text that would need excessive memory or recursion in the parser."""
     depth = parts = 0
-    previous: Token | None = None
-    for token in tokens.all:
-        dotted = previous is not None and previous.kind == "sign" and previous.text == "."
-        if token.kind == "sign":
-            depth += (token.text in "[{") - (token.text in "]}")
-        elif token.kind in ("word", "string"):
-            parts = parts + 1 if dotted else 1
-            if token.kind == "word" and len(token.text) > _LONGEST_WORD:
-                what = (
-                    f"a word of {len(token.text)} characters: at most {_LONGEST_WORD} are allowed"
-                )
-                _refuse(name, what, tokens.line(token.at))
+    previous = beyond = ""
+    for kind, text, at in tokens.all:
+        if kind == "sign":
+            depth += (text in "[{") - (text in "]}")
+        elif kind in ("word", "string"):
+            parts = parts + 1 if previous == "." else 1
+            if kind == "word" and len(text) > _LONGEST_WORD:
+                beyond = f"a word of {len(text)} characters: at most {_LONGEST_WORD} are allowed"
         if depth > _TOML_TEXT_DEEPEST:
-            _refuse(
-                name,
-                f"brackets nested deeper than {_TOML_TEXT_DEEPEST} levels",
-                tokens.line(token.at),
-            )
+            beyond = f"brackets nested deeper than {_TOML_TEXT_DEEPEST} levels"
         if parts > _MOST_PARTS:
-            what = f"a dotted key of more than {_MOST_PARTS} parts"
-            _refuse(name, what, tokens.line(token.at))
-        previous = token
+            beyond = f"a dotted key of more than {_MOST_PARTS} parts"
+        if beyond:
+            _refuse(name, beyond, tokens.line(at))
+        previous = text
 
 
 def _explained(message: str, text: str) -> tuple[str, int]:

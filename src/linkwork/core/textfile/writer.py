@@ -2,25 +2,27 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import fields, is_dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from linkwork.core.foundation.files import save_text
+from linkwork.core.foundation.units import AngleUnit
+from linkwork.core.foundation.values import (
+    Constant,
+    Key,
+    Kind,
+    Named,
+    Table,
+    Tables,
+    TablesOrFormula,
+)
 from linkwork.core.mechanism.description import Description
-from linkwork.core.mechanism.inputs import Input
-from linkwork.core.mechanism.linkage import Linkage
-from linkwork.core.mechanism.loaded import LoadedBodies
-from linkwork.core.mechanism.loops import Loops, PlainEquations
-from linkwork.core.mechanism.part.index import PARTS
-from linkwork.core.textfile.keys import FORMAT
+from linkwork.core.textfile.keys import FORMS
 
 if TYPE_CHECKING:
     from tomlkit import TOMLDocument
-
-
-_Tables = dict[str, dict[str, Any] | list[dict[str, Any]]]
 
 
 def write_text(description: Description) -> str:
@@ -28,14 +30,7 @@ def write_text(description: Description) -> str:
 
     Numbers keep all digits, names their spelling and order; default values are omitted.
     """
-    import tomlkit
-
-    document = tomlkit.document()
-    for key, entry in _head(description).items():
-        document.add(key, entry)
-    for name, table in _tables(description).items():
-        _add(document, name, table)
-    return tomlkit.dumps(document)
+    return write_tables(_content(description))
 
 
 def write_tables(tables: Mapping[str, Any]) -> str:
@@ -43,18 +38,20 @@ def write_tables(tables: Mapping[str, Any]) -> str:
     import tomlkit
 
     document = tomlkit.document()
-    nested = {
-        name: entry
-        for name, entry in tables.items()
-        if isinstance(entry, dict)
-        or (isinstance(entry, list) and entry and isinstance(entry[0], dict))
-    }
     for name, entry in tables.items():
-        if name not in nested:
+        if not _is_table(entry):
             document.add(name, _plain(entry))
-    for name, table in nested.items():
-        _add(document, name, table)
+    for name, table in tables.items():
+        if _is_table(table):
+            _add(document, name, table)
     return tomlkit.dumps(document)
+
+
+def _is_table(entry: object) -> bool:
+    """Whether an entry is a table or a list of tables."""
+    return isinstance(entry, dict) or (
+        isinstance(entry, list) and bool(entry) and isinstance(entry[0], dict)
+    )
 
 
 def part_lines(description: Description) -> list[tuple[str, str]]:
@@ -63,8 +60,8 @@ def part_lines(description: Description) -> list[tuple[str, str]]:
     Without the tables of numbers by name, equations, and what is asked about the mechanism.
     """
     found = []
-    for name, given in _tables(description).items():
-        if name in _NUMBERS:
+    for name, given in _content(description).items():
+        if name in _NUMBERS or not _is_table(given):
             continue
         listed = given if isinstance(given, list) else [given]
         found += [(name, _line(table)) for table in listed if table]
@@ -101,101 +98,44 @@ def save(description: Description, path: Path | str) -> None:
     save_text(write_text(description), path)
 
 
-def _head(description: Description) -> dict[str, Any]:
-    found: dict[str, Any] = {
-        "format": FORMAT,
-        "name": description.name,
-        "length": description.length,
-        "angle": description.angle.value,
-    }
-    for key in ("purpose", "source", "family", "configuration"):
-        if text := getattr(description, key):
-            found[key] = text
-    if isinstance(description, LoadedBodies):
-        usual = {"mass": LoadedBodies.mass, "force": LoadedBodies.force}
-        own = {key: getattr(description, key) for key in usual}
-        found |= {key: unit for key, unit in own.items() if unit != usual[key]}
-    if isinstance(description, Linkage) and description.sketch:
-        found["sketch"] = True
+#: Keys that are written whatever their value is.
+_ALWAYS = ("name", "length", "angle", "size")
+
+
+def _content(description: Description) -> dict[str, Any]:
+    """The keys of a file with their values, in the order of its form."""
+    form = next(form for form in FORMS if isinstance(description, form.made))  # type: ignore[arg-type]
+    return _given(description, form.keys)
+
+
+def _given(owner: Any, keys: Iterable[Key]) -> dict[str, Any]:
+    """The values of an object that are given and differ from their defaults."""
+    usual = {field.name: field.default for field in fields(owner)}
+    found = {}
+    for key in keys:
+        entry = key.kind.number if isinstance(key.kind, Constant) else getattr(owner, key.attribute)
+        always = key.required or key.name in _ALWAYS
+        if entry is not None and (always or entry != usual[key.attribute]):
+            found[key.name] = _written(entry, key.kind)
     return found
 
 
-def _tables(description: Description) -> _Tables:
-    """All tables that are not empty, in reading order."""
-    found: _Tables = {"dimensions": dict(description.dimensions)}
-    match description:
-        case Linkage():
-            for name in ("points", "links", "lengths", "angles"):
-                found[name] = dict(getattr(description, name))
-            for name in PARTS:
-                found[name] = [_given(part) for part in getattr(description, name)]
-            found |= _masses(description)
-            given = description.friction.items()
-            found["friction"] = {name: _given(friction) for name, friction in given}
-            found |= _inputs(description)
-        case Loops():
-            found["loops"] = dict(description.loops)
-            found["guess"] = dict(description.guess)
-            found |= _inputs(description)
-            found["points"] = dict(description.points)
-            found["links"] = dict(description.links)
-            found |= _masses(description)
-            found["loads"] = [_given(load) for load in description.loads]
-        case PlainEquations():
-            found["equations"] = dict(description.equations)
-            found["guess"] = dict(description.guess)
-            found |= _inputs(description)
+def _written(entry: Any, kind: Kind) -> Any:
+    """A value as it is written in a file."""
+    match kind:
+        case Table(keys):
+            if not is_dataclass(entry):  # of one key
+                return {keys[0].name: entry}
+            return _given(entry, keys)
+        case Tables(keys, single):
+            tables = [_given(each, keys) for each in entry]
+            return tables[0] if single and len(tables) == 1 else tables
+        case TablesOrFormula(keys) if not isinstance(entry, str):
+            return [_given(each, keys) for each in entry]
+        case Named(of):
+            return {name: _written(each, of) for name, each in entry.items()}
         case _:
-            raise TypeError(f"a {type(description).__name__} has no file format")
-    deviations = description.tolerances.items()
-    found["tolerances"] = {name: {"deviation": number} for name, number in deviations}
-    if isinstance(description, Linkage):
-        found["clearances"] = dict(description.clearances)
-    found["trace"] = {"points": description.trace} if description.trace else {}
-    found["outputs"] = dict(description.outputs)
-    found["questions"] = [_given(question) for question in description.questions]
-    needed = ("guess",)  # the reader requires it even if there are no unknowns
-    return {name: table for name, table in found.items() if table or name in needed}
-
-
-def _masses(description: LoadedBodies) -> _Tables:
-    masses = {link: _given(mass) for link, mass in description.masses.items()}
-    gravity = description.gravity
-    # a table without keys would be left out
-    given = {} if gravity is None else {"size": gravity.size, **_given(gravity)}
-    return {"gravity": given, "masses": masses, "stops": [_given(s) for s in description.stops]}
-
-
-def _inputs(description: Description) -> _Tables:
-    tables = [_input(which) for which in description.inputs]
-    return {"input": tables[0] if len(tables) == 1 else tables}
-
-
-def _input(which: Input) -> dict[str, Any]:
-    renamed = {"from_": "from"}
-    return {renamed.get(key, key): entry for key, entry in _given(which).items()}
-
-
-def _given(part: Any) -> dict[str, Any]:
-    """The fields of a part that are given and differ from their defaults."""
-    usual = {field.name: field.default for field in fields(part)}
-    names = {key.attribute: key.name for key in getattr(part, "keys", ())}
-    return {
-        names.get(key, key): _plain_entry(entry)
-        for key, entry in vars(part).items()
-        if entry is not None and entry != usual[key]
-    }
-
-
-def _plain_entry(entry: Any) -> Any:
-    if isinstance(entry, tuple):
-        return _rows(entry)
-    return _given(entry) if is_dataclass(entry) else entry
-
-
-def _rows(entry: tuple[Any, ...]) -> tuple[Any, ...]:
-    """A list of tables in the order of the part."""
-    return tuple(_given(each) if is_dataclass(each) else each for each in entry)
+            return entry.value if isinstance(entry, AngleUnit) else entry
 
 
 def _add(document: TOMLDocument, name: str, table: dict[str, Any] | list[dict[str, Any]]) -> None:
@@ -203,27 +143,15 @@ def _add(document: TOMLDocument, name: str, table: dict[str, Any] | list[dict[st
 
     document.add(tomlkit.nl())
     if isinstance(table, dict):
-        document.add(name, _filled(table))
+        document.add(name, _filled(tomlkit.table(), table))
         return
     tables = tomlkit.aot()
     for each in table:
-        tables.append(_filled(each))
+        tables.append(_filled(tomlkit.table(), each))
     document.add(name, tables)
 
 
-def _filled(entries: Mapping[str, Any]) -> Any:
-    import tomlkit
-
-    return _with_entries(tomlkit.table(), entries)
-
-
-def _inline(entries: Mapping[str, Any]) -> Any:
-    import tomlkit
-
-    return _with_entries(tomlkit.inline_table(), entries)
-
-
-def _with_entries(table: Any, entries: Mapping[str, Any]) -> Any:
+def _filled(table: Any, entries: Mapping[str, Any]) -> Any:
     for key, entry in entries.items():
         table.add(key, _plain(entry))
     return table
@@ -231,12 +159,14 @@ def _with_entries(table: Any, entries: Mapping[str, Any]) -> Any:
 
 def _plain(entry: Any) -> Any:
     """Convert tuples to lists and numbers of other packages to Python numbers."""
+    import tomlkit
+
     match entry:
         case bool() | str() | int():
             return entry
         case list() | tuple():
             return [_plain(each) for each in entry]
         case dict():
-            return _inline(entry)
+            return _filled(tomlkit.inline_table(), entry)
         case _:
             return float(entry)

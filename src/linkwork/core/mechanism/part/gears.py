@@ -106,8 +106,13 @@ class ArmPair(NamedPart):
 
     def check(self, checks: PartChecks) -> None:
         """Check for two wheels on a common arm."""
-        if self.check_arm(checks) and self.phase is not None:
-            checks.number(self.phase, "phase")
+        if self.check_arm(checks):
+            self.check_sizes(checks)
+            if self.phase is not None:
+                checks.number(self.phase, "phase")
+
+    def check_sizes(self, checks: PartChecks) -> None:
+        """Check radii or numbers of teeth, if there are any."""
 
     def check_arm(self, checks: PartChecks) -> bool:
         """Check for two wheels and an arm."""
@@ -160,14 +165,7 @@ class WheelPair(ArmPair):
         """Whether the larger wheel is a ring around the smaller one."""
         return False
 
-    def check(self, checks: PartChecks) -> None:
-        if not self.check_arm(checks):
-            return
-        self._check_sizes(checks)
-        if self.phase is not None:
-            checks.number(self.phase, "phase")
-
-    def _check_sizes(self, checks: PartChecks) -> None:
+    def check_sizes(self, checks: PartChecks) -> None:
         if (self.radii is None) == (self.teeth is None):
             what = "both" if self.radii is not None else "neither"
             checks.add(f"needs either radii or teeth, it has {what}")

@@ -201,7 +201,7 @@ class Slider(GuidePart):
             checks.add(f"names {self.points[0]} twice", "points")
         if len(self.points) == 2 and self.angle is not None:
             checks.add("is already given by the two points: leave one of them out", "angle")
-        checks.length(self.offset, "offset")
+        checks.amount(self.offset, "offset")
         if self.angle is not None:
             checks.number(self.angle, "angle")
 

@@ -4,14 +4,12 @@ from __future__ import annotations
 
 import itertools
 import math
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from enum import Enum
-from typing import Any, ClassVar, Self
+from typing import ClassVar, Self
 
-import numpy as np
-
-from linkwork.core.foundation.errors import choices
+from linkwork.core.foundation.errors import choices, undefined
 from linkwork.core.foundation.lanes import vector
 from linkwork.core.foundation.names import free_name
 from linkwork.core.foundation.precise import Precise
@@ -194,17 +192,7 @@ class Part:
     holders: ClassVar[str] = "joints"  # parts that may contradict an angle it fixes
 
     def __post_init__(self) -> None:
-        """Convert lists to tuples, so that parts are comparable and immutable; check all types."""
-        for field, entry in vars(self).items():
-            # the class is frozen: fields can only be set this way
-            object.__setattr__(self, field, _frozen(entry))
         check_values(self)
-
-    @classmethod
-    def of_table(cls, table: Mapping[str, Any]) -> Self:
-        """The part described by a table of a file."""
-        attributes = {key.name: key.attribute for key in cls.keys}
-        return cls(**{attributes[name]: entry for name, entry in table.items()})
 
     @property
     def label(self) -> str:
@@ -337,12 +325,6 @@ class NamedPart(Part):
         return (self.name,)
 
 
-def _frozen(entry: object) -> object:
-    if isinstance(entry, np.ndarray):
-        entry = entry.tolist()
-    return tuple(map(_frozen, entry)) if isinstance(entry, list | tuple) else entry
-
-
 def carriers(linkage: Bodies) -> dict[str, list[str]]:
     """The links and cylinders at every point, in the file's order."""
     found: dict[str, list[str]] = {point: [] for point in linkage.points}
@@ -416,15 +398,13 @@ class PartChecks:
     def defined(self, point: str, *field: str | int) -> bool:
         """Whether the point exists; reported if not."""
         if point not in self.linkage.points:
-            known = choices("points", self.linkage.points, point)
-            self.add(f'point "{point}" is not defined {known}', *field)
+            self.add(undefined("point", point, self.linkage.points), *field)
         return point in self.linkage.points
 
     def link(self, link: str, *field: str | int) -> bool:
         """Whether the link exists; reported if not."""
         if link not in self.linkage.links:
-            known = choices("links", self.linkage.links, link)
-            self.add(f'link "{link}" is not defined {known}', *field)
+            self.add(undefined("link", link, self.linkage.links), *field)
         return link in self.linkage.links
 
     def on(self, point: str, link: str, *field: str | int) -> None:
@@ -445,22 +425,13 @@ class PartChecks:
 
     def line(self, on: str, line: Sequence[str]) -> None:
         """Check a link and two of its points."""
-        if not self.link(on, "on"):
-            return
-        if len(line) != 2:
-            self.add(f"needs two points, got {len(line)}", "line")
-            return
-        for point in line:
-            self.on(point, on, "line")
-        if line[0] == line[1]:
-            self.add(f"needs two different points, got {line[0]} twice", "line")
+        if self.link(on, "on") and self.two(line, "point", "line"):
+            for point in line:
+                self.on(point, on, "line")
 
     def ends(self, between: Sequence[str]) -> None:
         """Check the two points of a cylinder or spring."""
-        if len(between) != 2:
-            self.add(f"needs two points, got {len(between)}", "between")
-        elif between[0] == between[1]:
-            self.add(f"needs two different points, got {between[0]} twice", "between")
+        self.two(between, "point", "between")
         for point in between:
             self.defined(point, "between")
 
@@ -473,13 +444,6 @@ class PartChecks:
         """A number that is limited so that products with it are finite."""
         key = (*self.key, *field)
         return self.linkage.numbers.check_amount(self.problems.add, key, number)
-
-    def length(self, number: Number, *field: str | int) -> float:
-        """A length or coordinate, limited so that its square is finite."""
-        amount = self.number(number, *field)
-        if abs(amount) > LARGEST:
-            self.add(f"{amount:g} is too large: at most {LARGEST:g} {self.linkage.length}", *field)
-        return amount
 
     def positive(self, number: Number, noun: str, *field: str | int) -> float:
         """A positive number, limited so that products with it are finite."""

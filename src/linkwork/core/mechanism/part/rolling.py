@@ -39,14 +39,6 @@ class RollingLine(Figure):
     def laid_by(self) -> tuple[str, ...]:
         return self.line if self.on == GROUND else ()
 
-    @property
-    def travelling(self) -> tuple[str, ...]:
-        return (self.center,)
-
-    @property
-    def extent(self) -> tuple[str, ...]:
-        return self.line
-
 
 @dataclass(frozen=True, kw_only=True)
 class Rolling(NamedPart):

@@ -9,7 +9,7 @@ from typing import ClassVar
 from linkwork.core.expression.grammar import CONSTANTS, parse
 from linkwork.core.expression.tree import constants_in
 from linkwork.core.expression.values import check_real, value
-from linkwork.core.foundation.errors import ExpressionError, choices
+from linkwork.core.foundation.errors import ExpressionError, undefined
 from linkwork.core.foundation.names import GROUND
 from linkwork.core.foundation.values import Key, ListOf, NumberValue as NumberKey, Text
 from linkwork.core.mechanism.bodies import Bodies, Figure, Outlines
@@ -197,8 +197,7 @@ class Load(Part):
                   (("link", self.link), ("with", self.turns_with))]  # fmt: skip
         for field, name, known in named:
             if name is not None and name not in known:
-                what = "point" if field == "point" else "link"
-                add(f'{what} "{name}" is not defined {choices(f"{what}s", known, name)}', field)
+                add(undefined("point" if field == "point" else "link", name, known), field)
         # beside a load on a moving link it may be that one's opposite, as of the gas in an engine
         others: tuple[Load, ...] = getattr(loaded, "loads", ())
         if all(load._on_ground(loaded) for load in (self, *others)):
