@@ -57,8 +57,7 @@ from linkwork.writers.plates.files import check_plate_file, plates_of
 from linkwork.writers.plates.plate import PlateOptions, PlateStack
 from linkwork.writers.plates.stack import stack_of
 from linkwork.writers.report.findings import template_of
-from linkwork.writers.report.gathering import write_report
-from linkwork.writers.report.report import check_report_file
+from linkwork.writers.report.report import check_report_file, write_report
 from linkwork.writers.robot.files import check_robot_file, robot_of
 from linkwork.writers.writing import kind_of, writers
 

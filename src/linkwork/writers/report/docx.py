@@ -16,10 +16,8 @@ from linkwork.writers.report.document import (
     Facts,
     Figure,
     FigureFile,
-    Listing,
-    Note,
-    Paragraph,
     Table,
+    Text,
     figure_files,
     office_terms,
     printed,
@@ -93,8 +91,8 @@ class _Writer:
         """The title, the lines about the author, and all sections."""
         self._set_up(document)
         self.file.add_heading(document.title, 0)
-        if document.byline:
-            self.file.add_paragraph(" · ".join(text for _, text in document.byline))
+        if document.author_line:
+            self.file.add_paragraph(document.author_line)
         for number, section in enumerate(document.sections, 1):
             self.file.add_heading(f"{number} {section.title}", 1)
             for block in section.blocks:
@@ -102,10 +100,7 @@ class _Writer:
 
     def _set_up(self, document: Document) -> None:
         properties = self.file.core_properties
-        properties.title, properties.author = (
-            document.title,
-            dict(document.byline).get("author", ""),
-        )
+        properties.title, properties.author = document.title, document.author
         properties.comments, properties.last_modified_by = "Written by Linkwork", ""
         properties.created = properties.modified = datetime(*_DATE)
         page, millimetres = self.file.sections[0], self.shared.Mm
@@ -118,10 +113,13 @@ class _Writer:
 
     def _block(self, block: Block) -> None:
         match block:
-            case Paragraph():
+            case Text(style="paragraph"):
                 self.file.add_paragraph(block.text)
-            case Note():
+            case Text(style="note"):
                 self.file.add_heading(block.text, 2)
+            case Text():
+                run = self.file.add_paragraph().add_run(block.text)
+                run.font.size, run.font.name = self.shared.Pt(_CODE), _MONOSPACED
             case Facts():
                 self._facts(block)
             case Equation():
@@ -130,8 +128,6 @@ class _Writer:
                 self._table(block)
             case Figure():
                 self._figure(block)
-            case Listing():
-                self._listing(block)
 
     def _facts(self, facts: Facts) -> None:
         if not facts.pairs:
@@ -206,11 +202,6 @@ class _Writer:
         self.file.add_picture(io.BytesIO(file.content), width=self.shared.Mm(file.width))
         self.file.paragraphs[-1].paragraph_format.keep_with_next = True
         self._caption(f"Figure {figure.number}. {figure.caption}", above=False)
-
-    def _listing(self, listing: Listing) -> None:
-        line = self.file.add_paragraph()
-        run = line.add_run(listing.text)
-        run.font.size, run.font.name = self.shared.Pt(_CODE), _MONOSPACED
 
 
 _WORD = "http://schemas.openxmlformats.org/wordprocessingml/2006/main"
