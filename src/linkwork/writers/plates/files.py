@@ -178,9 +178,8 @@ def _write(document: Any, space: Any, item: PlacedPlate, colour: int) -> None:
             center, radius = disc
             space.add_circle((center.real, center.imag), radius, dxfattribs={"layer": layer})
             continue
-        corners = zip(curve.corners, curve.bulges, strict=True)
         space.add_lwpolyline(
-            [(float(z.real), float(z.imag), float(bulge)) for z, bulge in corners],
+            [(float(z.real), float(z.imag), float(bulge)) for z, _, bulge in curve.sides],
             format="xyb",
             close=True,
             dxfattribs={"layer": layer},
@@ -237,7 +236,7 @@ def _path(curve: Outline) -> str:
     """A closed path of lines and arcs."""
     start = curve.corners[0]
     parts = [f"M{_number(start.real)} {_number(-start.imag)}"]
-    for begin, end, bulge in zip(curve.corners, curve.ends, curve.bulges, strict=True):
+    for begin, end, bulge in curve.sides:
         to = f"{_number(end.real)} {_number(-end.imag)}"
         if bulge == 0.0:
             parts.append(f"L{to}")
@@ -420,9 +419,8 @@ def _wire(cad: Any, curve: Outline) -> Any:
         plane = cad.Plane((center.real, center.imag, 0))
         return cad.Wire([cad.Edge.make_circle(radius, plane)])
     edges = []
-    for begin, end, bulge in zip(
-        curve.corners.tolist(), curve.ends.tolist(), curve.bulges.tolist(), strict=True
-    ):
+    for start, finish, bulge in curve.sides:
+        begin, end = complex(start), complex(finish)
         ends = [(z.real, z.imag, 0) for z in (begin, end)]
         if bulge == 0.0:
             edges.append(cad.Edge.make_line(*ends))

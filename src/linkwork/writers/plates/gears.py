@@ -3,21 +3,20 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction
-from typing import Any
 
 import numpy as np
 
 from linkwork.core.drawing.wheels import ADDENDUM, DEDENDUM, mesh_phases
-from linkwork.core.foundation.arrays import Array, ComplexArray
+from linkwork.core.foundation.arrays import Array
 from linkwork.core.foundation.errors import InputError
 from linkwork.core.mechanism.bodies import DiscFigure, Mesh
 from linkwork.core.mechanism.linkage import Linkage
 from linkwork.core.mechanism.part.gears import ToothedPart
 from linkwork.core.mechanism.skeleton import Skeleton
-from linkwork.writers.plates.outlines import Outline, shapely
+from linkwork.writers.plates.outlines import Outline, shapely, shapes_of
 from linkwork.writers.plates.plate import Sizes
 
 #: Teeth of gears given by radii, at least: no undercut at 20 degrees.
@@ -26,8 +25,7 @@ _LARGEST_RATIO = 1000  # of whole numbers that stand for a ratio of radii
 _WHOLE = 1e-9  # of a ratio
 _FLANK = 16  # points along a flank
 _IN_GAP = 1e-6  # of a pitch
-#: Positions within one pitch, at most.
-STEPS = 4096
+_STEPS = 4096  # positions within one pitch, at most
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -242,36 +240,49 @@ def touches(first: Wheel, second: Wheel, apart: float) -> bool:
     Notes
     -----
     Both are rotated about fixed centres, in so small steps that no point moves more than the least
-    distance so far; if that takes too many, they count as touching.
+    distance so far.
     """
     if second.disc.ring:
         first, second = second, first
     inside = first.disc.ring
     pair = [replace(wheel, phase=phase) for wheel, phase in _in_mesh(first, second)]
     shapes = [involute_outline(wheel, 0j).polygon() for wheel in pair]
-    reach = sum(wheel.radii[1] / wheel.teeth for wheel in pair)
-    count = 64
-    while count <= STEPS:
-        turn = math.tau * np.arange(count) / count
-        ways = (1.0, 1.0 if inside else -1.0)
-        placed = [
-            polygons(place + np.exp(1j * way * turn / wheel.teeth)[:, None] * shape)
+    ways = (1.0, 1.0 if inside else -1.0)
+
+    def distance(pitches: Array) -> float:
+        one, other = (
+            shapes_of(place + np.exp(1j * way * math.tau * pitches / wheel.teeth)[:, None] * shape)
             for place, way, wheel, shape in zip((0j, apart), ways, pair, shapes, strict=True)
-        ]
-        if inside:
-            held = shapely().contains(placed[0], placed[1]).all()
-            distance = shapely().distance(shapely().boundary(placed[0]), placed[1]).min()
-            if not held:
-                return True
-        else:
-            distance = shapely().distance(placed[0], placed[1]).min()
-        if distance <= 0.0:
+        )
+        if not inside:
+            return float(shapely().distance(one, other).min())
+        if not shapely().contains(one, other).all():
+            return 0.0
+        return float(shapely().distance(shapely().boundary(one), other).min())
+
+    return touch_within_a_pitch(
+        distance, math.pi * sum(wheel.radii[1] / wheel.teeth for wheel in pair)
+    )
+
+
+def touch_within_a_pitch(distance: Callable[[Array], float], reach: float) -> bool:
+    """Whether two parts touch somewhere in a pitch; if that takes too many steps, they count so.
+
+    Parameters
+    ----------
+    distance : callable
+        The least distance at some fractions of a pitch.
+    reach : float
+        How far points of both move at most, together, in half a pitch.
+    """
+    count = 64
+    while count <= _STEPS:
+        least = distance(np.arange(count) / count)
+        if least <= 0.0:
             return True
-        # half a step either way
-        moved = math.pi * reach / count
-        if moved < distance:
+        if reach / count < least:
             return False
-        count = math.ceil(1.1 * math.pi * reach / distance)
+        count = math.ceil(1.1 * reach / least)
     return True
 
 
@@ -283,8 +294,3 @@ def _in_mesh(first: Wheel, second: Wheel) -> Iterable[tuple[Wheel, float]]:
     )
     phases = mesh_phases([pair], lambda _: 0.0, {"1": 0j, "2": 1.0 + 0j})
     return zip((first, second), (phases[disc] for disc in pair), strict=True)
-
-
-def polygons(z: ComplexArray) -> Any:
-    """Polygons of shapely with corners (B, n)."""
-    return shapely().polygons(np.stack([z.real, z.imag], axis=-1))
