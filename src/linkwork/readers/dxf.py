@@ -42,6 +42,15 @@ class _Entity:
         return self.all(code)[0] if self.all(code) else default
 
     @property
+    def place(self) -> str:
+        """Where it is, for notes."""
+        return f"line {self.line}"
+
+    def corner(self, source: Source, x: str, y: str) -> complex:
+        """A place of two words."""
+        return source.point(x, y, f"a coordinate of {self.kind[:20]}", self.line)
+
+    @property
     def layer(self) -> str:
         return self.one(8, "").strip().lower()
 
@@ -91,17 +100,16 @@ def read(source: Source) -> Assembly:
     driven = []
     for entity, path, closed in _paths(source, entities):
         along = _pins_of(path, closed, pins)
-        place = f"line {entity.line}"
         if entity.kind == "LINE" and (len(along) < 2 or not {path[0], path[-1]} <= along.keys()):
-            source.leave_out(place, "line with an end at no circle")
+            source.leave_out(entity.place, "line with an end at no circle")
         elif len(along) < 2:
-            source.leave_out(place, "polyline with fewer than two circles at its corners")
+            source.leave_out(entity.place, "polyline with fewer than two circles at its corners")
         elif entity.layer in _GROUND_LAYERS:
             assembly.fixed.update(along.values())
         else:
             link = assembly.add_link(f"L{len(assembly.links) + 1}", along.values())
             if entity.layer in _INPUT_LAYERS:
-                driven.append((place, link))
+                driven.append((entity.place, link))
     for place, link in driven:
         # without a pivot on ground the drawing does not show the reference of the angle
         pivots = [p for p in assembly.links[link] if p in assembly.fixed]
@@ -150,13 +158,8 @@ def _entities(source: Source) -> tuple[str, list[_Entity]]:
     if len(entities) > _MOST:
         source.refuse(f"has more than {_MOST} entities")
     for entity in (entity for entity in entities if entity.is_on_sheet):
-        source.leave_out(f"line {entity.line}", "entity of the sheet (paper space)")
+        source.leave_out(entity.place, "entity of the sheet (paper space)")
     return units, [entity for entity in entities if not entity.is_on_sheet]
-
-
-def _place(source: Source, entity: _Entity, x: str, y: str) -> complex:
-    what = f"a coordinate of {entity.kind[:20]}"
-    return complex(source.number(x, what, entity.line), source.number(y, what, entity.line))
 
 
 def _pins(source: Source, entities: list[_Entity]) -> list[_Pin]:
@@ -166,9 +169,9 @@ def _pins(source: Source, entities: list[_Entity]) -> list[_Pin]:
         if entity.kind != "CIRCLE":
             continue
         if entity.is_mirrored:
-            source.leave_out(f"line {entity.line}", "circle seen from behind (extrusion)")
+            source.leave_out(entity.place, "circle seen from behind (extrusion)")
             continue
-        at = _place(source, entity, entity.one(10, ""), entity.one(20, ""))
+        at = entity.corner(source, entity.one(10, ""), entity.one(20, ""))
         radius = source.number(entity.one(40, ""), "the radius", entity.line)
         same = next((p for p in pins if abs(p.at - at) <= _TOLERANCE * max(radius, p.radius)), None)
         if same is None:
@@ -189,30 +192,30 @@ def _paths(
     for entity in entities:
         if entity.kind == "LINE":
             ends = [
-                _place(source, entity, entity.one(x, ""), entity.one(x + 10, "")) for x in (10, 11)
+                entity.corner(source, entity.one(x, ""), entity.one(x + 10, "")) for x in (10, 11)
             ]
             yield entity, ends, False
         elif entity.kind in ("LWPOLYLINE", "POLYLINE") and entity.is_mirrored:
-            source.leave_out(f"line {entity.line}", "polyline seen from behind (extrusion)")
+            source.leave_out(entity.place, "polyline seen from behind (extrusion)")
         elif entity.kind == "LWPOLYLINE":
             if entity.has_arcs:
-                source.leave_out(f"line {entity.line}", _ARCS)
+                source.leave_out(entity.place, _ARCS)
             xs, ys = entity.all(10), entity.all(20)
             if len(xs) != len(ys):
                 source.refuse("a corner of the polyline lacks a coordinate", entity.line)
-            corners = [_place(source, entity, x, y) for x, y in zip(xs, ys, strict=True)]
+            corners = [entity.corner(source, x, y) for x, y in zip(xs, ys, strict=True)]
             yield entity, corners, entity.is_closed
         elif entity.kind == "POLYLINE":
             polyline = (entity, [])
         elif entity.kind == "VERTEX" and polyline is not None:
             if entity.has_arcs:
-                source.leave_out(f"line {entity.line}", _ARCS)
-            polyline[1].append(_place(source, entity, entity.one(10, ""), entity.one(20, "")))
+                source.leave_out(entity.place, _ARCS)
+            polyline[1].append(entity.corner(source, entity.one(10, ""), entity.one(20, "")))
         elif entity.kind == "SEQEND" and polyline is not None:
             yield *polyline, polyline[0].is_closed
             polyline = None
         elif entity.kind != "CIRCLE":
-            source.leave_out(f"line {entity.line}", f"entity {entity.kind[:20]}")
+            source.leave_out(entity.place, f"entity {entity.kind[:20]}")
 
 
 def _pins_of(path: list[complex], closed: bool, pins: list[_Pin]) -> dict[complex, str]:

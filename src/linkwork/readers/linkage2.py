@@ -40,10 +40,10 @@ class _Document:
         self.source, self.assembly = source, Assembly(source)
         program = root.one("program") or Element("program", {}, root.line)
         shown = program.get("units", "Millimeters")
-        self.assembly.length = source.chosen(shown, _UNITS, f"line {program.line}")
+        self.assembly.length = source.chosen(shown, _UNITS, program.place)
         self.scale = float(LENGTHS["in"] / LENGTHS[self.assembly.length] / 96)
         if program.get("scalefactor", "1") != "1":
-            source.leave_out(f"line {program.line}", "factor of the lengths that are shown")
+            source.leave_out(program.place, "factor of the lengths that are shown")
         self.points: dict[str, str] = {}
         self.links: dict[str, str] = {}
         connectors = self._mechanical(root, "connector")
@@ -65,7 +65,7 @@ class _Document:
         layer = element.get("layer", "0")
         number = int(layer) if layer.isascii() and layer.isdigit() and len(layer) < 12 else 0
         if number & _DRAWING_LAYER:
-            self.source.leave_out(f"line {element.line}", f"drawing element <{element.tag}>")
+            self.source.leave_out(element.place, f"drawing element <{element.tag}>")
         return not number & _DRAWING_LAYER
 
     def _mechanical(self, root: Element, tag: str) -> list[Element]:
@@ -91,10 +91,10 @@ class _Document:
         if element.get("draw") == "true":
             self.assembly.trace.append(point)
         if element.get("drawcircle"):
-            self.source.leave_out(f"line {element.line}", "drawn circle")
+            self.source.leave_out(element.place, "drawn circle")
 
     def _add_link(self, element: Element) -> None:
-        key, place = self._id(element), f"line {element.line}"
+        key, place = self._id(element), element.place
         if key in self.links:
             self.source.refuse(f'two links have the id "{key[:40]}"', element.line)
         points = []
@@ -120,14 +120,14 @@ class _Document:
             start = abs(b - a)
             which = Input(cylinder=name, from_=start, to=start + throw, step=throw / 100.0)
             self.assembly.inputs.append(which)
-        self.source.leave_out(f"line {element.line}", "strokes per minute of the actuator")
+        self.source.leave_out(element.place, "strokes per minute of the actuator")
 
     def _fasten(self, node: Element) -> None:
         """A gear or connector that is fixed on a link."""
         to = node.get("fastenlink") or (node.get("fasten") if node.tag == "connector" else "")
         other = self.links.get(to)
         if node.get("fastenconnector"):
-            self.source.leave_out(f"line {node.line}", "gear fastened to a connector")
+            self.source.leave_out(node.place, "gear fastened to a connector")
         if other is None:
             return
         if node.tag == "connector":
@@ -139,12 +139,10 @@ class _Document:
                     PARTS["welds"].of_table({"links": [other, link]})
                 )
             else:
-                self.source.leave_out(
-                    f"line {node.line}", "fastened link without a common connector"
-                )
+                self.source.leave_out(node.place, "fastened link without a common connector")
 
     def _drive_or_slide(self, element: Element) -> None:
-        point, place = self.points[element.get("id")], f"line {element.line}"
+        point, place = self.points[element.get("id")], element.place
         if element.get("slider") == "true":
             limits = [self.points.get(each.get("id")) for each in element.all("slidelimit")]
             if element.get("slideradius") and self.source.number(
@@ -157,13 +155,10 @@ class _Document:
                 self.source.leave_out(place, "slide without two limits")
         if element.get("input") == "true":
             # gears turn with the links to which they are fastened
-            pinned = [
-                n
-                for n in self.assembly.carriers(point)
-                if n == GROUND or len(self.assembly.links[n]) > 1
-            ]
+            carriers = self.assembly.carriers(point)
+            pinned = [n for n in carriers if n == GROUND or len(self.assembly.links[n]) > 1]
             # a gear alone on its pin can be driven too
-            pinned = pinned if len(pinned) == 2 else self.assembly.carriers(point)
+            pinned = pinned if len(pinned) == 2 else carriers
             rpm = element.get("rpm")
             speed = f"{self.source.number(rpm, 'rpm', element.line)} rpm" if rpm else None
             drive_joint(self.assembly, place, pinned, speed)
@@ -180,7 +175,7 @@ class _Document:
             self.source.leave_out(place, "slide whose limits are on no other link")
 
     def _add_ratio(self, element: Element) -> None:
-        place = f"line {element.line}"
+        place = element.place
         ends = [(self.links.get(link.get("id")), link) for link in element.all("link")]
         wheels = [name for name, _ in ends if name and self.assembly.links.get(name)]
         if len(ends) != 2 or len(wheels) != 2 or wheels[0] == wheels[1]:
@@ -202,7 +197,7 @@ class _Document:
             self.assembly.add_part("belts", "chain", "belt", **pair, radii=tuple(sizes))
             if element.get("sizeassize") != "true":
                 self.source.leave_out(
-                    f"line {element.line}", "radii of the chain's wheels: the ratio is right"
+                    element.place, "radii of the chain's wheels: the ratio is right"
                 )
             return
         a, b = (self.assembly.points[center] for center in centers)

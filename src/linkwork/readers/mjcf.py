@@ -14,7 +14,6 @@ import numpy as np
 
 from linkwork.core.foundation.arrays import Array
 from linkwork.core.foundation.names import GROUND
-from linkwork.core.mechanism.inputs import Input
 from linkwork.readers.assembly import Assembly, Source
 from linkwork.readers.robots import (
     Body,
@@ -76,9 +75,9 @@ class _World:
             self._add_defaults(node, {})
         for node in self.root.children:
             if node.tag == "include":
-                self.source.leave_out(f"line {node.line}", "include: other files are not read")
+                self.source.leave_out(node.place, "include: other files are not read")
             elif node.tag not in _READ + _DRAWN:
-                self.source.leave_out(f"line {node.line}", f"section <{node.tag[:20]}>")
+                self.source.leave_out(node.place, f"section <{node.tag[:20]}>")
         worlds = list(self.root.all("worldbody"))
         if not worlds:
             self.source.refuse("has no <worldbody>", self.root.line)
@@ -127,7 +126,7 @@ class _World:
         """The sites, the joint and the children of a body."""
         inherited = element.get("childclass", inherited)
         for child in element.children:
-            place = f"line {child.line}"
+            place = child.place
             if child.tag == "site" and child.get("fromto"):
                 self.source.leave_out(place, "site with fromto")
             elif child.tag == "site":
@@ -179,7 +178,7 @@ class _World:
         self.joints[name] = body.name
         for key, what in _FORCES.items():
             if element.get(key):
-                self.source.leave_out(f"line {element.line}", f"{what} of a joint")
+                self.source.leave_out(element.place, f"{what} of a joint")
 
     def planar(self) -> Planar:
         """The links, with loops and inputs; closures that no position meets are left out."""
@@ -206,7 +205,7 @@ class _World:
             if element.tag == "connect":
                 self._connect(planar, element)
             elif element.tag != "weld":
-                source.leave_out(f"line {element.line}", f"coupling of joints <{element.tag[:20]}>")
+                source.leave_out(element.place, f"coupling of joints <{element.tag[:20]}>")
         planar.add_sites()
         return planar
 
@@ -214,7 +213,7 @@ class _World:
         """The active ones; a file may have several sections."""
         for element in (element for each in self.root.all("equality") for element in each.children):
             if element.get("active") == "false":
-                self.source.leave_out(f"line {element.line}", f"inactive <{element.tag[:20]}>")
+                self.source.leave_out(element.place, f"inactive <{element.tag[:20]}>")
             else:
                 yield element
 
@@ -262,7 +261,7 @@ class _World:
             at = one.pose.place(self._numbers(element, "anchor", 3, "0 0 0"))
             ends = [(one.name, at), (two.name, at)]
         if planar.link(ends[0][0]) == planar.link(ends[1][0]):
-            planar.source.leave_out(f"line {element.line}", "connect inside one link")
+            planar.source.leave_out(element.place, "connect inside one link")
         else:
             planar.pin(element.get("name") or f"{ends[0][0]}_{ends[1][0]}", *ends)
 
@@ -271,14 +270,13 @@ class _World:
             body = self.joints.get(element.get("joint"))
             joint = next((b.joint for b in self.bodies if b.name == body), None)
             if body is None or joint is None:
-                self.source.leave_out(f"line {element.line}", "actuator that drives no joint")
+                self.source.leave_out(element.place, "actuator that drives no joint")
             elif joint.kind == "slide":
-                self.source.leave_out(f"line {element.line}", "the input: a slide without a range")
+                self.source.leave_out(element.place, "the input: a slide without a range")
             else:
                 link, on = planar.link(body), planar.link(planar.bodies[body].parent)
                 # a body welded to the world drives the other side
                 link, on = (on, link) if link == GROUND else (link, on)
-                against = None if on == GROUND else on
-                planar.assembly.inputs.append(Input(link=link, relative_to=against))
+                planar.assembly.drive(link, on)
         if not planar.assembly.inputs:
             self.source.leave_out("the file", "the input: no actuator drives a hinge")

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import math
 import re
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 from urllib.parse import unquote
 
@@ -362,7 +362,7 @@ def _joint_lines(source: Source, text: str) -> Assembly:
             source.refuse("is not a joint: links, type (R, P, RP), x and y", line)
         if len(words) < k + 3:
             source.refuse("a joint needs x and y", line)
-        x, y = (source.number(word, "a coordinate", line) for word in words[k + 1 : k + 3])
+        at = source.point(*words[k + 1 : k + 3], "a coordinate", line)
         rest = words[k + 3 :]
         turn = (
             source.number(rest.pop(0), "the angle", line) if rest and _is_number(rest[0]) else 0.0
@@ -380,7 +380,7 @@ def _joint_lines(source: Source, text: str) -> Assembly:
             JointRow(
                 place=place,
                 kind=words[k].upper(),
-                at=complex(x, y),
+                at=at,
                 links=links,
                 angle=math.radians(turn),
                 input=drives,
@@ -389,12 +389,9 @@ def _joint_lines(source: Source, text: str) -> Assembly:
         )
     if not any(row.input for row in rows):
         # before flags existed, the driven link was the one of this name
-        driven = next(
-            (k for k, row in enumerate(rows) if {GROUND, "input"} == set(row.links)), None
-        )
-        if driven is not None:
-            driven_row = rows[driven]
-            rows[driven] = JointRow(**{**vars(driven_row), "input": True})
+        driven = [k for k, row in enumerate(rows) if {GROUND, "input"} == set(row.links)]
+        for k in driven[:1]:
+            rows[k] = replace(rows[k], input=True)
     return _pmks_assembled(source, rows)
 
 
@@ -415,7 +412,7 @@ def _first_links(source: Source, fields: dict[str, str]) -> Assembly:
             JointRow(
                 place=place,
                 kind=kind,
-                at=complex(source.number(x, f"x of {place}"), source.number(y, f"y of {place}")),
+                at=source.point(x, y, f"a coordinate of {place}"),
                 links=(*ground, *on),
                 angle=math.radians(source.number(turn, f"angle of {place}")),
                 input=drives == "t",

@@ -13,7 +13,6 @@ from typing import Any, NoReturn
 
 from linkwork.core.foundation.errors import InputError
 from linkwork.core.foundation.names import GROUND
-from linkwork.core.mechanism.inputs import Input
 from linkwork.readers.assembly import Assembly, Drawn, Source
 
 TITLE, SUFFIXES = "pylinkage JSON", (".json",)
@@ -94,8 +93,7 @@ class _Reading:
         if name in self.points:
             self.refuse("joints", k, f'"{name[:40]}" is the name of two joints')
         place = f"a coordinate of joints[{k}]"
-        at = complex(self.source.number(x, place), self.source.number(y, place))
-        self.points[name] = self.assembly.add_point(name, at, fixed)
+        self.points[name] = self.assembly.add_point(name, self.source.point(x, y, place), fixed)
         return self.points[name]
 
     def size(self, entry: dict[str, Any], key: str, k: int) -> float | None:
@@ -124,7 +122,7 @@ class _Parents(_Reading):
         if parent.get("inline"):
             name = parent.get("name")
             place = f"a coordinate of joints[{k}].{key}"
-            at = complex(*(self.source.number(parent.get(c), place) for c in "xy"))
+            at = self.source.point(parent.get("x"), parent.get("y"), place)
             preferred = name if isinstance(name, str) else f"O{k}"
             # inline joints are written again wherever they are used
             same = self.points.get(preferred)
@@ -154,9 +152,7 @@ class _Parents(_Reading):
         if entry.get("angle") is not None:
             self.source.leave_out(f"joints[{k}]", _STEP)
         carriers = [n for n in self.assembly.carriers(base) if n != link]
-        against = GROUND if GROUND in carriers or not carriers else carriers[0]
-        relative = None if against == GROUND else against
-        self.assembly.inputs.append(Input(link=link, relative_to=relative))
+        self.assembly.drive(link, carriers[0] if carriers else GROUND)  # ground is the first
 
     def revolute(self, entry: dict[str, Any], k: int, point: str) -> None:
         for number in "01":
@@ -166,15 +162,15 @@ class _Parents(_Reading):
     def fixed(self, entry: dict[str, Any], k: int, point: str) -> None:
         a, b = (self.parent(entry, f"joint{number}", k) for number in "01")
         # a place relative to two joints is rigid only on a link with both
-        on = self.assembly.carriers(a, b)
-        if not on:
+        on = self.assembly.carrier(a, b)
+        if on is None:
             self.source.leave_out(
                 f"joints[{k}]", "joint fixed to two joints that are on no common link"
             )
             return
-        self.assembly.put_on(on[0], point)
+        self.assembly.put_on(on, point)
         length, angle = self.size(entry, "distance", k), self.size(entry, "angle", k)
-        if on[0] == GROUND:
+        if on == GROUND:
             return
         if length is not None:
             self.assembly.lengths[f"{a} {point}"] = length
@@ -183,12 +179,12 @@ class _Parents(_Reading):
 
     def slide(self, entry: dict[str, Any], k: int, point: str) -> None:
         base, first, second = (self.parent(entry, f"joint{number}", k) for number in "012")
-        on = self.assembly.carriers(first, second)
-        if not on:
+        on = self.assembly.carrier(first, second)
+        if on is None:
             self.source.leave_out(f"joints[{k}]", "slide on two joints that are on no common link")
             return
         self.bar(base, point, self.size(entry, "revolute_radius", k))
-        self.assembly.add_slot(f"s_{point}", point, on[0], (first, second))
+        self.assembly.add_slot(f"s_{point}", point, on, (first, second))
 
 
 _PARENTS = {
@@ -259,22 +255,23 @@ class _Mechanism(_Reading):
             return
         if entry.get("angular_velocity") is not None:
             self.source.leave_out(f"links[{k}]", _STEP)
-        ends: tuple[float | None, float | None] = (None, None)
-        if entry.get("type") == "arc_driver":
-            angles = (self.size(entry, key, k) for key in ("arc_start", "arc_end"))
-            ends = tuple(None if end is None else math.degrees(end) for end in angles)  # type: ignore[assignment]  # two
-        self.assembly.inputs.append(Input(link=link, from_=ends[0], to=ends[1]))
+        ends: dict[str, float] = {}
+        for field, key in (("from_", "arc_start"), ("to", "arc_end")):
+            angle = self.size(entry, key, k) if entry.get("type") == "arc_driver" else None
+            if angle is not None:
+                ends[field] = math.degrees(angle)
+        self.assembly.drive(link, GROUND, **ends)
 
     def _slide(self, entry: dict[str, Any], k: int, point: str) -> None:
         axis = entry.get("axis", [1.0, 0.0])
         if not isinstance(axis, list) or len(axis) != 2:
             self.refuse("joints", k, "needs axis, a list of two numbers")
-        along = complex(*(self.source.number(c, f"the axis of joints[{k}]") for c in axis))
+        along = self.source.point(*axis, f"the axis of joints[{k}]")
         if not along:
             self.refuse("joints", k, "has an axis of length zero")
         through = entry.get("line_point")
         if isinstance(through, list) and len(through) == 2:
-            start = complex(*(self.source.number(c, f"line_point of joints[{k}]") for c in through))
+            start = self.source.point(*through, f"line_point of joints[{k}]")
             away = ((self.assembly.points[point] - start) * along.conjugate()).imag
             if abs(away) > 1e-9 * abs(along) * max(abs(start), abs(self.assembly.points[point])):
                 self.source.leave_out(
@@ -286,9 +283,9 @@ class _Mechanism(_Reading):
     def _follow(self, entry: dict[str, Any], k: int, point: str) -> None:
         refs = [entry.get(f"ref_joint{number}_id") for number in "12"]
         known = [self.points[ref] for ref in refs if isinstance(ref, str) and ref in self.points]
-        on = self.assembly.carriers(*known) if len(known) == 2 else []
-        if on:
-            self.assembly.put_on(on[0], point)
+        on = self.assembly.carrier(*known) if len(known) == 2 else None
+        if on is not None:
+            self.assembly.put_on(on, point)
         else:
             self.source.leave_out(
                 f"joints[{k}]", "tracker of two joints that are on no common link"

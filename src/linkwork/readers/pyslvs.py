@@ -85,7 +85,6 @@ class _Parser:
         at = fields.get("P", [])
         if len(at) != 2:
             self.source.refuse("a joint needs its place, P[x, y]", line)
-        x, y = (self.source.number(word, "a coordinate", line) for word in at)
         angle = self.source.number(fields.get("A", ["0"])[0], "the angle", line)
         if "color" in fields:
             self.source.leave_out(f"joint {count}", "colour")
@@ -95,7 +94,7 @@ class _Parser:
         return JointRow(
             place=f"joint {count}",
             kind=kind,
-            at=complex(x, y),
+            at=self.source.point(*at, "a coordinate", line),
             links=tuple(fields.get("L", ())),
             angle=math.radians(angle),
             name=f"P{count - 1}",

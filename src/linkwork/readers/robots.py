@@ -29,6 +29,11 @@ class Element:
     line: int
     children: list[Element] = field(default_factory=list)
 
+    @property
+    def place(self) -> str:
+        """Where it is, for notes."""
+        return f"line {self.line}"
+
     def get(self, name: str, default: str = "") -> str:
         """An attribute."""
         return self.attributes.get(name, default)

@@ -49,7 +49,7 @@ class _Tree:
             source.refuse("two joints have the same name", root.line)
         for element in root.children:
             if element.tag not in ("link", "joint"):
-                source.leave_out(f"line {element.line}", f"element <{element.tag[:20]}>")
+                source.leave_out(element.place, f"element <{element.tag[:20]}>")
         self.bodies: list[Body] = []
         self._grow()
         for name in self.links:
@@ -112,7 +112,7 @@ class _Tree:
                 place, _ = self._origin(inner)
                 body.sites[f"{name}_center"] = pose.place(place)
             what = "mass of a link" if inner.tag == "inertial" else "shape of a link"
-            self.source.leave_out(f"line {inner.line}", what)
+            self.source.leave_out(inner.place, what)
         return name
 
     def _origin(self, element: Element) -> tuple[list[float], Array]:
@@ -137,7 +137,7 @@ class _Tree:
             if body is None or body.joint is None:
                 continue
             low, high = self._moved(row.get("name"), ranges)
-            place = f"line {row.line}"
+            place = row.place
             if row.one("coupling") is not None:
                 self.source.leave_out(place, "polynomial of a coupling")
             self._add_input(planar, body, body.joint, low, high)
@@ -178,7 +178,7 @@ class _Tree:
         turning = (link, on) if joint.kind == "hinge" else ()
         known = (name == GROUND or len(planar.assembly.links[name]) > 1 for name in turning)
         if joint.name not in planar.points or not all(known):
-            self.source.leave_out(f"line {body.line}", "the input of a link with one point")
+            self.source.leave_out(body.place, "the input of a link with one point")
             return
         if joint.kind == "slide":
             drives: dict[str, Any] = {"slider": planar.points[joint.name]}
