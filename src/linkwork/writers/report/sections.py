@@ -34,7 +34,6 @@ from linkwork.core.results.listing.motion_listing import (
     system_columns,
     trail_columns,
 )
-from linkwork.core.results.motion import Motion
 from linkwork.core.results.quantity import Kind
 from linkwork.core.textfile.writer import part_lines
 from linkwork.writers.formulas.rate_formulas import dimension_kinds
@@ -245,27 +244,23 @@ def newton(findings: Findings) -> Iterator[Block]:
 
 def proof(findings: Findings) -> Iterator[Block]:
     """One paragraph on which results are proved, and the evidence in numbers."""
-    sentences = [*_positions(findings), *_lists(findings), *_unproved(findings)]
-    yield Text(text=" ".join(sentences))
+    others = [name for name in ("forces", "tolerances") if findings.shown(name)]
+    listed = " and ".join(", ".join(["rates", "plots", *others]).rsplit(", ", 1))
+    unproved = f"Not proved are {listed}: they are computed in double precision from the positions."
+    yield Text(text=" ".join([*_positions(findings), *_lists(findings), unproved]))
     if findings.motion is not None and findings.motion.found.any():
-        yield Facts(pairs=tuple(evidence_fields(findings.motion, _measure(findings))))
-
-
-def _measure(findings: Findings) -> str:
-    return " of the longest link" if findings.model.equations.loops else ""
-
-
-def _radius(findings: Findings) -> str:
-    return radius_measure(findings.model.equations.loops, findings.model.equations.real)
+        measure = " of the longest link" if findings.model.equations.loops else ""
+        yield Facts(pairs=tuple(evidence_fields(findings.motion, measure)))
 
 
 def _positions(findings: Findings) -> Iterator[str]:
-    motion = findings.motion
+    motion, equations = findings.motion, findings.model.equations
+    radius = radius_measure(equations.loops, equations.real)
     if motion is None:
         if not findings.position.status.ok:
             yield f"No position was found: {findings.position.message}."
             return
-        certificate = certificate_text(findings.position.certificate, _radius(findings))
+        certificate = certificate_text(findings.position.certificate, radius)
         yield f"Certificate of the position: {certificate}."
         return
     there = int(motion.found.sum())
@@ -275,9 +270,10 @@ def _positions(findings: Findings) -> Iterator[str]:
     proved = np.flatnonzero(motion.certified)
     yield f"Rows with a complete proof: {len(proved)}."
     if len(proved):
+        largest = significant(float(motion.radius[proved].max()), 2)
         yield (
-            f"In each of these, a true position lies within {_largest(motion, proved)}"
-            f"{_radius(findings)} of the computed one, no other lies near it, and the motion from "
+            f"In each of these, a true position lies within {largest}"
+            f"{radius} of the computed one, no other lies near it, and the motion from "
             "the start to it stays on one branch."
         )
     for reason in Certification:
@@ -286,10 +282,6 @@ def _positions(findings: Findings) -> Iterator[str]:
         )
         if count and reason is not Certification.CERTIFIED:
             yield f"Rows without it: {count}; {reason.value}."
-
-
-def _largest(motion: Motion, rows: np.ndarray) -> str:
-    return f"{significant(float(motion.radius[rows].max()), 2)}"
 
 
 def _lists(findings: Findings) -> Iterator[str]:
@@ -309,14 +301,6 @@ def _lists(findings: Findings) -> Iterator[str]:
 
 def _sentence(text: str) -> str:
     return f"{text[:1].upper()}{text[1:]}."
-
-
-def _unproved(findings: Findings) -> Iterator[str]:
-    """What carries no proof."""
-    others = ["rates", "plots"]
-    others += [name for name in ("forces", "tolerances") if findings.shown(name)]
-    listed = f"{', '.join(others[:-1])} and {others[-1]}"
-    yield f"Not proved are {listed}: they are computed in double precision from the positions."
 
 
 def versions(findings: Findings) -> Iterator[Block]:
