@@ -226,20 +226,13 @@ def _pins_of(path: list[complex], closed: bool, pins: list[_Pin]) -> dict[comple
         nearest = min(pins, key=lambda pin: abs(pin.at - corner), default=None)
         if nearest is not None and abs(nearest.at - corner) <= nearest.radius * (1.0 + _TOLERANCE):
             on_path[corner] = nearest.name
-        if k + 1 < len(path) or closed:
-            end = path[(k + 1) % len(path)]
-            inside = (
-                sorted(
-                    (abs(pin.at - corner), pin.name, pin.at)
-                    for pin in pins
-                    if _is_on(pin, corner, end)
-                )
-                if end != corner and len(path) < 50
-                else []
-            )
-            for _, name, at in inside:
-                if name not in on_path.values():
-                    on_path[at] = name
+        end = path[(k + 1) % len(path)]
+        if end == corner or len(path) >= 50 or (k + 1 == len(path) and not closed):
+            continue
+        inside = [pin for pin in pins if _is_on(pin, corner, end)]
+        for pin in sorted(inside, key=lambda pin: (abs(pin.at - corner), pin.name)):
+            if pin.name not in on_path.values():
+                on_path[pin.at] = pin.name
     return on_path
 
 

@@ -317,14 +317,22 @@ def _allowed_name(name: str) -> str:
 
 TITLE, SUFFIXES = "PMKS or PMKS+ link or text", (".pmks",)
 _APP = "https://app.pmksplus.com/?"
-_ROW = re.compile(r"[^\s,|]+[\s,]+(?:[^\s,|]+[\s,]+)*?(?:R|P|RP|G)[\s,]+[-+.\d]", re.IGNORECASE)
+_LINKS = r"(?P<links>[^\s,|]+(?:[\s,]+[^\s,|]+)*?)[\s,]+(?P<kind>R|P|RP|G)[\s,]+"
+_SIZE = r"[-+.\d][^\s,]*"
+_BEGIN = re.compile(rf"{_LINKS}[-+.\d]", re.IGNORECASE)
+#: Links, type, place, angle and flags; a link may be called R or P, numbers follow the type.
+_ROW = re.compile(
+    rf"{_LINKS}(?P<x>{_SIZE})[\s,]+(?P<y>{_SIZE})(?:[\s,]+(?P<angle>{_SIZE}))?"
+    r"(?:[\s,]+(?P<flags>[^\s,]+))?(?:[\s,]+(?P<rest>[^\s,]+).*)?",
+    re.IGNORECASE,
+)
 _HOSTS = re.compile(r"https?://\S*pmks", re.IGNORECASE)
 
 
 def matches(head: str) -> bool:
     """Whether a text begins like this format."""
     text = head.strip()
-    return bool(_HOSTS.match(text) or _ROW.match(text) or text.startswith("pmks2:"))
+    return bool(_HOSTS.match(text) or _BEGIN.match(text) or text.startswith("pmks2:"))
 
 
 def read(source: Source) -> Assembly:
@@ -352,38 +360,31 @@ def _joint_lines(source: Source, text: str) -> Assembly:
     """Rows of links, type, place, angle and flags."""
     rows: list[JointRow] = []
     for line, row in enumerate(text.splitlines(), 1):
-        words = [word for word in re.split(r"[\s,]+", row.strip()) if word]
-        if not words:
+        row = row.strip(" \t,")
+        if not row:
             continue
-        # a link may be called R or P: numbers follow the type
-        kinds = [k for k, word in enumerate(words) if k and word.upper() in ("R", "P", "RP", "G")]
-        k = next((k for k in kinds if re.match(r"[-+.\d]", "".join(words[k + 1 : k + 2]))), None)
-        if k is None:
+        match = _ROW.fullmatch(row)
+        if match is None:
             source.refuse("is not a joint: links, type (R, P, RP), x and y", line)
-        if len(words) < k + 3:
-            source.refuse("a joint needs x and y", line)
-        at = source.point(*words[k + 1 : k + 3], "a coordinate", line)
-        rest = words[k + 3 :]
-        turn = (
-            source.number(rest.pop(0), "the angle", line) if rest and _is_number(rest[0]) else 0.0
-        )
-        flags = rest.pop(0) if rest else ""
-        links = tuple(GROUND if name.lower() == GROUND else name for name in words[:k])
-        place = f"line {line}"
-        if rest:
-            source.leave_out(place, f'"{rest[0][:40]}" after the flags')
-        if words[k].upper() == "G":
+        kind, place = match["kind"].upper(), f"line {line}"
+        if match["rest"]:
+            source.leave_out(place, f'"{match["rest"][:40]}" after the flags')
+        at = source.point(match["x"], match["y"], "a coordinate", line)
+        turn = source.number(match["angle"] or "0", "the angle", line)
+        if kind == "G":
             source.leave_out(place, "gear joint")
             continue
-        drives = len(flags) == 4 and flags[3] == "t"
         rows.append(
             JointRow(
                 place=place,
-                kind=words[k].upper(),
+                kind=kind,
                 at=at,
-                links=links,
+                links=tuple(
+                    GROUND if name.lower() == GROUND else name
+                    for name in re.split(r"[\s,]+", match["links"])
+                ),
                 angle=math.radians(turn),
-                input=drives,
+                input=re.fullmatch("...t", match["flags"] or "") is not None,
                 name=f"P{len(rows) + 1}",
             )
         )
@@ -438,10 +439,6 @@ def _pmks_assembled(source: Source, rows: list[JointRow]) -> Assembly:
         source.leave_out("the file", "the input: none is marked")
     add_joints(assembly, rows)
     return assembly
-
-
-def _is_number(word: str) -> bool:
-    return re.fullmatch(r"[-+]?[\d.]+(?:[eE][-+]?\d+)?", word) is not None
 
 
 def write(drawn: Drawn) -> str:

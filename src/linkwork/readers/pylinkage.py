@@ -38,7 +38,7 @@ def read(source: Source) -> Assembly:
     assembly = Assembly(source, name if isinstance(name, str) else "")
     assembly.length = "unit"
     if "links" in data:
-        _Mechanism(assembly, joints, _tables(source, data, "links")).add()
+        _Mechanism(assembly, joints).add(_tables(source, data, "links"))
     else:
         _Parents(assembly, joints).add()
     return assembly
@@ -201,13 +201,7 @@ _PARENTS = {
 class _Mechanism(_Reading):
     """Joints with places, and links with joints."""
 
-    def __init__(
-        self, assembly: Assembly, joints: list[dict[str, Any]], links: list[dict[str, Any]]
-    ) -> None:
-        super().__init__(assembly, joints)
-        self.links = links
-
-    def add(self) -> None:
+    def add(self, links: list[dict[str, Any]]) -> None:
         """Add points, links, the driver, then slides and followers."""
         for k, entry in enumerate(self.joints):
             name, at = self.named(entry, "id", "joints", k), entry.get("position")
@@ -215,7 +209,7 @@ class _Mechanism(_Reading):
                 self.refuse("joints", k, "needs position, a list of two numbers")
             self.add_point(name, k, at[0], at[1], entry.get("type") == "ground")
         # links first: slides and trackers look for links of their joints
-        for k, entry in enumerate(self.links):
+        for k, entry in enumerate(links):
             self._add_link(entry, k)
         for k, entry in enumerate(self.joints):
             kind, point = entry.get("type", "revolute"), self.points[entry["id"]]
@@ -228,10 +222,9 @@ class _Mechanism(_Reading):
 
     def _add_link(self, entry: dict[str, Any], k: int) -> None:
         name, ends = self.named(entry, "id", "links", k), entry.get("joints")
-        known = isinstance(ends, list) and all(
-            isinstance(j, str) and j in self.points for j in ends
-        )
-        if not isinstance(ends, list) or not known:
+        if not isinstance(ends, list) or any(
+            not isinstance(j, str) or j not in self.points for j in ends
+        ):
             self.refuse("links", k, "needs joints, a list of ids of joints")
         points = [self.points[joint] for joint in ends]
         kind = entry.get("type", "link")
@@ -269,14 +262,6 @@ class _Mechanism(_Reading):
         along = self.source.point(*axis, f"the axis of joints[{k}]")
         if not along:
             self.refuse("joints", k, "has an axis of length zero")
-        through = entry.get("line_point")
-        if isinstance(through, list) and len(through) == 2:
-            start = self.source.point(*through, f"line_point of joints[{k}]")
-            away = ((self.assembly.points[point] - start) * along.conjugate()).imag
-            if abs(away) > 1e-9 * abs(along) * max(abs(start), abs(self.assembly.points[point])):
-                self.source.leave_out(
-                    f"joints[{k}]", "line_point: the joint is not on that line, but on a parallel"
-                )
         line = self.assembly.guide(GROUND, point, along)
         self.assembly.add_slot(f"s_{point}", point, GROUND, line)
 
@@ -317,18 +302,15 @@ def write(drawn: Drawn) -> str:
     tables = []
     for name, joints_of_link in drawn.linkage.links.items():
         table: dict[str, Any] = {"id": name, "type": "link", "joints": list(joints_of_link)}
-        motor = next(
-            (
-                p
-                for p, w in driven.items()
-                if w.link == name or (w.link is None and p in joints_of_link)
-            ),
-            None,
-        )
+        motors = [
+            point
+            for point, which in driven.items()
+            if which.link == name or (which.link is None and point in joints_of_link)
+        ]
         if name == GROUND:
             table["type"] = GROUND
-        elif motor in drawn.linkage.links[GROUND] and motor is not None:
-            table |= {"type": "driver", "motor_joint": motor}
+        elif motors and motors[0] in drawn.linkage.links[GROUND]:
+            table |= {"type": "driver", "motor_joint": motors[0]}
         tables.append(table)
     data = {"name": drawn.linkage.name, "joints": joints, "links": tables, "ground": GROUND}
     return json.dumps(data, indent=2, ensure_ascii=False) + "\n"

@@ -128,40 +128,31 @@ class _Tree:
 
     def drive(self, planar: Planar) -> None:
         """Drive every joint over its limits; mimic joints move in step."""
-        ranges = {row.get("name"): self._range(row) for row in self.joints}
+        bodies = {body.joint.name: body for body in self.bodies if body.joint is not None}
         for row in self.joints:
-            body = next(
-                (b for b in self.bodies if b.joint is not None and b.joint.name == row.get("name")),
-                None,
-            )
+            body = bodies.get(row.get("name"))
             if body is None or body.joint is None:
                 continue
-            low, high = self._moved(row.get("name"), ranges)
-            place = row.place
             if row.one("coupling") is not None:
-                self.source.leave_out(place, "polynomial of a coupling")
-            self._add_input(planar, body, body.joint, low, high)
+                self.source.leave_out(row.place, "polynomial of a coupling")
+            self._add_input(planar, body, body.joint, *self._moved(row))
         self.source.leave_out("the file", "loops: a tree has none, every joint is driven")
 
-    def _moved(self, name: str, ranges: dict[str, tuple[float, float]]) -> tuple[float, float]:
+    def _moved(self, joint: Element, depth: int = 0) -> tuple[float, float]:
         """The range of a joint, or the range that follows from its leading joint."""
-        joints = {joint.get("name"): joint for joint in self.joints}
-        lines: list[tuple[float, float]] = []
-        while (mimic := joints[name].one("mimic")) is not None:
-            name = mimic.get("joint")
-            if name not in ranges:
-                self.source.refuse("mimic refers to a joint that does not exist", mimic.line)
-            if len(lines) == len(joints):
-                self.source.refuse("mimic joints follow each other in a circle", mimic.line)
-            factor = self.source.number(mimic.get("multiplier", "1"), "multiplier", mimic.line)
-            lines.append(
-                (factor, self.source.number(mimic.get("offset", "0"), "offset", mimic.line))
-            )
-        low, high = ranges[name]
-        for factor, offset in reversed(lines):
-            # inputs move in step, so that a straight line is exact
-            low, high = factor * low + offset, factor * high + offset
-        return low, high
+        mimic = joint.one("mimic")
+        if mimic is None:
+            return self._range(joint)
+        leading = next((j for j in self.joints if j.get("name") == mimic.get("joint")), None)
+        if leading is None:
+            self.source.refuse("mimic refers to a joint that does not exist", mimic.line)
+        if depth == len(self.joints):
+            self.source.refuse("mimic joints follow each other in a circle", mimic.line)
+        factor = self.source.number(mimic.get("multiplier", "1"), "multiplier", mimic.line)
+        offset = self.source.number(mimic.get("offset", "0"), "offset", mimic.line)
+        # inputs move in step, so that a straight line is exact
+        low, high = self._moved(leading, depth + 1)
+        return factor * low + offset, factor * high + offset
 
     def _range(self, element: Element) -> tuple[float, float]:
         limit = element.one("limit")

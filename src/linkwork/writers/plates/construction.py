@@ -114,11 +114,11 @@ class Construction:
         made = cls(linkage, mm, sizes, bodies, ways, travel, holes)
         turns = {link: phase(turn) for link, (_, turn) in poses.items()}
         points = {point: complex(motion.place(point).v[solved][0]) for point in linkage.points}
-        wheels, meshes = gear_meshes(linkage, model.skeleton, sizes, mm, turns, points)
+        meshes = gear_meshes(linkage, model.skeleton, sizes, mm, turns, points)
+        wheels = list(dict.fromkeys(wheel for _, *pair in meshes for wheel in pair))
         racks = list(rack_meshes(linkage, wheels, sizes, mm))
-        single = [mesh.pinion for mesh in racks if mesh.pinion not in wheels]
-        names = made._gears([*wheels, *single], meshes, turns)
-        made._racks(racks, dict(zip([*wheels, *single], names, strict=True)), poses, now)
+        names = made._gears([*wheels, *(mesh.pinion for mesh in racks)], meshes, turns)
+        made._racks(racks, names, poses, now)
         made._cams(model.skeleton, turns)
         made._main_plates()
         for plate in made.plates:
@@ -128,20 +128,21 @@ class Construction:
 
     def _gears(
         self, wheels: Sequence[Wheel], meshes: Sequence[GearMesh], turns: Mapping[str, float]
-    ) -> list[str]:
+    ) -> dict[Wheel, str]:
         """Add the gears; returns the names of their plates."""
-        names = []
-        for wheel in wheels:
+        names: dict[Wheel, str] = {}
+        for wheel in dict.fromkeys(wheels):
             body = self.bodies[wheel.disc.link]
             turned = replace(wheel, phase=wheel.phase + turns[wheel.disc.link] - turns[body.name])
-            if wheel.disc.ring:
-                names.append(self._add(ring_plate(turned, body, self.sizes)))
-            else:
-                names.append(self._add(self._wheel(gear_blank(turned, body), body)))
-        for mesh in meshes:
-            one, other = (wheels[k] for k in mesh.wheels)
-            self.meshes.append(frozenset(names[k] for k in mesh.wheels))
-            self.notes.append(f"{mesh.name}: {one.teeth} and {other.teeth} teeth, {_gearing(one)}")
+            plate = (
+                ring_plate(turned, body, self.sizes)
+                if wheel.disc.ring
+                else self._wheel(gear_blank(turned, body), body)
+            )
+            names[wheel] = self._add(plate)
+        for name, one, other in meshes:
+            self.meshes.append(frozenset((names[one], names[other])))
+            self.notes.append(f"{name}: {one.teeth} and {other.teeth} teeth, {_gearing(one)}")
         return names
 
     def _racks(

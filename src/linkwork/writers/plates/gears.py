@@ -54,12 +54,8 @@ class Wheel:
         return pitch - down * self.module, pitch + up * self.module
 
 
-@dataclass(frozen=True, kw_only=True)
-class GearMesh:
-    """Two wheels in mesh, by their numbers in a list of wheels."""
-
-    name: str
-    wheels: tuple[int, int]
+#: The name of a mesh and its two wheels.
+GearMesh = tuple[str, Wheel, Wheel]
 
 
 def gear_meshes(
@@ -69,8 +65,8 @@ def gear_meshes(
     millimetres: float,
     angles: Mapping[str, float],
     points: Mapping[str, complex],
-) -> tuple[list[Wheel], list[GearMesh]]:
-    """The gears of a mechanism and their meshes.
+) -> list[GearMesh]:
+    """The meshes of the gears of a mechanism.
 
     Parameters
     ----------
@@ -86,7 +82,7 @@ def gear_meshes(
     """
     figures = skeleton.of(Mesh)
     if not figures:
-        return [], []
+        return []
     toothed = dict(_with_teeth([mesh.discs for mesh in figures], sizes, millimetres))
     pairs = [(toothed[a], toothed[b]) for a, b in (mesh.discs for mesh in figures)]
     phases = mesh_phases(pairs, angles.__getitem__, points)
@@ -108,14 +104,9 @@ def gear_meshes(
                     backlash=sizes.backlash_of(module),
                 ),
             )
-    number = {disc: k for k, disc in enumerate(wheels)}
-    meshes = [
-        GearMesh(name=mesh.name, wheels=(number[a], number[b]))
-        for mesh, (a, b) in zip(figures, pairs, strict=True)
-    ]
     for mesh, pair in zip(figures, pairs, strict=True):
         _check_mesh(mesh, pair, phases, wheels, points, millimetres)
-    return list(wheels.values()), meshes
+    return [(mesh.name, wheels[a], wheels[b]) for mesh, (a, b) in zip(figures, pairs, strict=True)]
 
 
 def _check_mesh(

@@ -130,13 +130,10 @@ class _Writer:
                 self._figure(block)
 
     def _facts(self, facts: Facts) -> None:
-        if not facts.pairs:
-            return
-        grid = self.file.add_table(len(facts.pairs), 2)
-        for k, width in enumerate((_LABEL, _TEXT)):
-            texts = [pair[k] for pair in facts.pairs]
-            self._column(grid, k, texts, width, right=False)
-        self.file.add_paragraph()
+        if facts.pairs:
+            cells = list(map(list, zip(*facts.pairs, strict=True)))
+            self._grid(cells, (_LABEL, _TEXT), (False, False))
+            self.file.add_paragraph()
 
     def _equation(self, equation: Equation) -> None:
         line = self.file.add_paragraph()
@@ -154,14 +151,13 @@ class _Writer:
     def _table(self, table: Table) -> None:
         self._caption(f"Table {table.number}. {table.caption}", above=True)
         cells = [[c.header, *printed(c)] for c in table.columns]
-        grid = self.file.add_table(len(cells[0]), len(cells))
-        needed = [_SPACE + _LETTER * max(map(len, column)) for column in cells]
-        narrowed = [w for w, c in zip(needed, table.columns, strict=True) if c.align != "left"]
-        for k, column in enumerate(table.columns):
-            width = needed[k]
-            if sum(needed) > _WIDTH and column.align == "left":
-                width = min(width, (_WIDTH - sum(narrowed)) / (len(needed) - len(narrowed)))
-            self._column(grid, k, cells[k], width, right=column.align != "left")
+        words = [column.align == "left" for column in table.columns]
+        widths = [_SPACE + _LETTER * max(map(len, column)) for column in cells]
+        if sum(widths) > _WIDTH:  # words are broken into lines
+            numbers = sum(w for w, is_words in zip(widths, words, strict=True) if not is_words)
+            most = (_WIDTH - numbers) / max(sum(words), 1)
+            widths = [min(w, most) if i else w for w, i in zip(widths, words, strict=True)]
+        grid = self._grid(cells, widths, [not is_words for is_words in words])
         for cell in grid.rows[0].cells:
             cell.paragraphs[0].runs[0].font.bold = True
         if table.is_short:
@@ -170,19 +166,22 @@ class _Writer:
         self._rules(grid)
         self.file.add_paragraph()
 
-    def _column(
-        self, grid: Any, k: int, texts: Sequence[str], width: float, *, right: bool
-    ) -> None:
-        """Fill a column of a table; ``width`` [mm]."""
+    def _grid(
+        self, columns: Sequence[Sequence[str]], widths: Sequence[float], right: Sequence[bool]
+    ) -> Any:
+        """A table without lines: ``widths`` of its columns [mm], and which are flush right."""
+        grid = self.file.add_table(len(columns[0]), len(columns))
         grid.autofit = False
-        grid.columns[k].width = self.shared.Mm(width)
-        for place, shown in zip(grid.columns[k].cells, texts, strict=True):
-            place.width = self.shared.Mm(width)
-            line = place.paragraphs[0]
-            line.paragraph_format.space_after = self.shared.Pt(0)
-            if right:
-                line.alignment = self.right
-            line.add_run(shown).font.size = self.shared.Pt(_SMALL)
+        for column, texts, size, flush in zip(grid.columns, columns, widths, right, strict=True):
+            column.width = self.shared.Mm(size)
+            for place, shown in zip(column.cells, texts, strict=True):
+                place.width = self.shared.Mm(size)
+                line = place.paragraphs[0]
+                line.paragraph_format.space_after = self.shared.Pt(0)
+                if flush:
+                    line.alignment = self.right
+                line.add_run(shown).font.size = self.shared.Pt(_SMALL)
+        return grid
 
     def _rules(self, grid: Any) -> None:
         """Lines above and below the head and below the table; the head is repeated on each page."""

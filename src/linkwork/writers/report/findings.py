@@ -28,25 +28,11 @@ from linkwork.forces.functions import stalls
 from linkwork.forces.results import ForceStatus, Reactions
 from linkwork.forces.stall import Stall
 
-#: The sections that a report can have, with their headings.
-SECTIONS = {
-    "summary": "Summary",
-    "drawing": "Drawing",
-    "vectors": "Vector diagram",
-    "dimensions": "Given dimensions",
-    "equations": "Equations",
-    "newton": "Newton-Raphson step by step",
-    "motion": "Motion",
-    "plots": "Plots",
-    "paths": "Paths of points",
-    "circuits": "Circuits and dead points",
-    "configurations": "Configurations",
-    "forces": "Forces",
-    "tolerances": "Tolerances",
-    "proof": "What is proved",
-    "versions": "Versions",
-    "file": "Mechanism file",
-}
+#: The sections that a report can have.
+SECTIONS = (
+    "summary", "drawing", "vectors", "dimensions", "equations", "newton", "motion", "plots",
+    "paths", "circuits", "configurations", "forces", "tolerances", "proof", "versions", "file",
+)  # fmt: skip
 #: The templates of the package.
 TEMPLATES = ("engineer", "student")
 
@@ -61,7 +47,7 @@ _KEYS = Form(
         Key("format", Constant(FORMAT), "The version of this file format; write format = 1"),
         Key(
             "sections",
-            ListOf(Text(tuple(SECTIONS)), "section", 1),
+            ListOf(Text(SECTIONS), "section", 1),
             "The sections in their order",
             required=True,
         ),

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator, Mapping, Sequence
+from contextlib import suppress
 from dataclasses import replace
 
 import numpy as np
@@ -145,7 +146,7 @@ def _position(findings: Findings) -> Iterator[Block]:
     for caption, listed in (("Unknowns and outputs", values), ("Points", places)):
         if listed:
             cells = [
-                fixed(v) if position.value_units.get(n) in _DECIMALS else short(float(f"{v:.8g}"))
+                fixed(v) if position.value_units.get(n) in _DECIMALS else short(v, 8)
                 for n, v in listed.items()
             ]
             units = [position.value_units.get(name, "") for name in listed]
@@ -196,27 +197,22 @@ def _spaced(values: Array, every: float, units: Mapping[str, str]) -> CountArray
 
 def _groups(swept: Motion, names: Sequence[str]) -> Iterator[tuple[str, list[Asked]]]:
     """The quantities, their first and their second rates, each with a caption."""
-    yield "Motion", [swept.quantity(name) for name in names]
-    for caption, listed in _rates(swept, names):
-        if listed:
-            yield caption, listed
-
-
-def _rates(swept: Motion, names: Sequence[str]) -> Iterator[tuple[str, list[Asked]]]:
-    by = next(iter(swept.inputs))
+    rates = [("Velocities", ".velocity"), ("Accelerations", ".acceleration")]
     if swept.speed is None:
-        pairs = (("First derivatives", "d1"), ("Second derivatives", "d2"))
-        suffix = f" with respect to {by}"
-    else:
-        pairs, suffix = (("Velocities", "velocity"), ("Accelerations", "acceleration")), ""
-    for caption, rate in pairs:
+        by = next(iter(swept.inputs))
+        rates = [
+            (f"First derivatives with respect to {by}", ".d1"),
+            (f"Second derivatives with respect to {by}", ".d2"),
+        ]
+    yield "Motion", [swept.quantity(name) for name in names]
+    for caption, rate in rates:
         listed = []
         for name in names:
-            try:
-                listed.append(swept.quantity(f"{name}.{rate}"))
-            except (InputError, UnknownNameError):  # a rate of a rate, or of a number of parts
-                continue
-        yield caption + suffix, listed
+            # a rate of a rate, or of a number of parts, does not exist
+            with suppress(InputError, UnknownNameError):
+                listed.append(swept.quantity(name + rate))
+        if listed:
+            yield caption, listed
 
 
 def _columns(swept: Motion, listed: Sequence[Asked], rows: CountArray) -> Iterator[Column]:

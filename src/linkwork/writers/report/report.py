@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import errno
 import os
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from pathlib import Path
 
 from linkwork.core.api.mechanism import Mechanism
@@ -16,42 +16,36 @@ from linkwork.core.foundation.files import (
     unwritten,
     written_folder,
 )
-from linkwork.writers.report.document import Document, Facts, Section
+from linkwork.writers.report import motion_sections, sections
+from linkwork.writers.report.document import Block, Document, Facts, Section
 from linkwork.writers.report.docx import docx_bytes, docx_package
 from linkwork.writers.report.findings import FOLLOWED, SECTIONS, Findings, template_of
 from linkwork.writers.report.html import html_bytes, markdown_files
-from linkwork.writers.report.motion_sections import (
-    check_template,
-    circuits,
-    configurations,
-    forces,
-    motion,
-    paths,
-    plots,
-    tolerances,
-)
 from linkwork.writers.report.pdf import pdf_bytes, typst_package
-from linkwork.writers.report.sections import (
-    dimensions,
-    drawing,
-    equations,
-    file,
-    newton,
-    proof,
-    summary,
-    vectors,
-    versions,
-)
 
 #: Formats of reports by suffix.
 FORMATS = (".html", ".pdf", ".docx", ".md")
 
 _PACKAGES = {".pdf": typst_package, ".docx": docx_package}
-_BUILDERS = (
-    summary, drawing, vectors, dimensions, equations, newton, motion, plots, paths, circuits,
-    configurations, forces, tolerances, proof, versions, file,
-)  # fmt: skip
-_BUILDER_OF = dict(zip(SECTIONS, _BUILDERS, strict=True))
+_SECTIONS: Mapping[str, tuple[str, Callable[[Findings], Iterator[Block]]]] = {
+    "summary": ("Summary", sections.summary),
+    "drawing": ("Drawing", sections.drawing),
+    "vectors": ("Vector diagram", sections.vectors),
+    "dimensions": ("Given dimensions", sections.dimensions),
+    "equations": ("Equations", sections.equations),
+    "newton": ("Newton-Raphson step by step", sections.newton),
+    "motion": ("Motion", motion_sections.motion),
+    "plots": ("Plots", motion_sections.plots),
+    "paths": ("Paths of points", motion_sections.paths),
+    "circuits": ("Circuits and dead points", motion_sections.circuits),
+    "configurations": ("Configurations", motion_sections.configurations),
+    "forces": ("Forces", motion_sections.forces),
+    "tolerances": ("Tolerances", motion_sections.tolerances),
+    "proof": ("What is proved", sections.proof),
+    "versions": ("Versions", sections.versions),
+    "file": ("Mechanism file", sections.file),
+}
+assert tuple(_SECTIONS) == SECTIONS
 
 
 def write_report(
@@ -113,7 +107,7 @@ def write_report(
     chosen = template_of(template).with_head(
         {"title": title, "author": author, "institution": institution, "date": date}
     )
-    check_template(chosen, mechanism.model)
+    motion_sections.check_template(chosen, mechanism.model)
     tell = progress or (lambda fraction: None)
     results = Findings(mechanism, chosen, at, configuration, tell)
     content, pictures = report_of(
@@ -139,22 +133,21 @@ def check_report_file(path: Path) -> None:
 
 def document_of(findings: Findings) -> Document:
     """The sections of the template with their content; the last one names those left out."""
-    sections: list[Section] = []
+    written: list[Section] = []
     absent: list[tuple[str, str]] = []
     for name in findings.template.sections:
+        heading, build = _SECTIONS[name]
         try:
             findings.check_hidden(name)
-            blocks = tuple(_BUILDER_OF[name](findings))
+            written.append(Section(title=heading, blocks=tuple(build(findings))))
         except UnknownNameError:  # of the template
             raise
         except InputError as error:
-            absent.append((SECTIONS[name], str(error)))
-        else:
-            sections.append(Section(title=SECTIONS[name], blocks=blocks))
+            absent.append((heading, str(error)))
     if absent:
-        sections.append(Section(title="Sections left out", blocks=(Facts(pairs=tuple(absent)),)))
+        written.append(Section(title="Sections left out", blocks=(Facts(pairs=tuple(absent)),)))
     title = findings.template.title or findings.model.description.name
-    return Document.numbered(title, findings.template.byline, sections)
+    return Document.numbered(title, findings.template.byline, written)
 
 
 def report_of(
