@@ -8,7 +8,6 @@ from collections.abc import Callable, Sequence
 from datetime import datetime
 from typing import Any
 
-from linkwork.core.foundation.loading import installed_with
 from linkwork.writers.report.document import (
     Block,
     Document,
@@ -32,28 +31,10 @@ _WIDTH = 166.0  # of a table [mm]
 _FONT, _MONOSPACED = "Arial", "DejaVu Sans Mono"
 
 
-def docx_package() -> Any:
-    """python-docx.
-
-    Raises
-    ------
-    MissingPackageError
-        If it is not installed.
-    """
-    with installed_with("report", "Word reports need python-docx"):
-        import docx
-    return docx
-
-
 def docx_bytes(document: Document, progress: Callable[[float], None]) -> bytes:
-    """The document as the content of a .docx file.
+    """The document as the content of a .docx file."""
+    import docx
 
-    Raises
-    ------
-    MissingPackageError
-        If python-docx is not installed.
-    """
-    docx = docx_package()
     pictures = {figure.number: figure for figure in figure_files(document, "png", progress)}
     file = docx.Document()
     _Writer(file, pictures).write(document)

@@ -4,8 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
-from functools import cache, cached_property
-from importlib import resources
+from functools import cached_property
 from pathlib import Path
 from typing import Any
 
@@ -27,6 +26,7 @@ from linkwork.design.tolerances import tolerance
 from linkwork.forces.functions import stalls
 from linkwork.forces.results import ForceStatus, Reactions
 from linkwork.forces.stall import Stall
+from linkwork.writers.report.document import template_text
 
 #: The sections that a report can have.
 SECTIONS = (
@@ -36,7 +36,6 @@ SECTIONS = (
 #: The templates of the package.
 TEMPLATES = ("engineer", "student")
 
-_FOLDER = "templates"
 _BYLINE = ("author", "institution", "date")
 _NAMES = ListOf(Text(), "quantity")
 _KEYS = Form(
@@ -109,7 +108,7 @@ def template_of(name: str | Path) -> Template:
     """
     shown = str(as_path(name))
     if shown in TEMPLATES:
-        return _shipped(shown)
+        return _read(template_text(f"{shown}.toml"), shown)
     path = as_path(name)
     if not path.exists() and path.parent == Path() and not path.suffix:
         raise InputError(
@@ -117,12 +116,6 @@ def template_of(name: str | Path) -> Template:
             "names a file"
         )
     return _read(text_of(bytes_of(path, shown), shown), shown)
-
-
-@cache
-def _shipped(name: str) -> Template:
-    file = resources.files(__package__).joinpath(_FOLDER, f"{name}.toml")
-    return _read(file.read_text("utf-8"), name)
 
 
 def _read(text: str, name: str) -> Template:

@@ -9,7 +9,6 @@ from importlib import metadata
 from pathlib import Path
 from typing import Any
 
-from linkwork.core.foundation.loading import installed_with
 from linkwork.core.results.listing.motion_listing import Column
 from linkwork.writers.report.document import (
     Block,
@@ -28,28 +27,10 @@ from linkwork.writers.report.document import (
 _ONE_LINE = 30  # characters of a cell
 
 
-def typst_package() -> Any:
-    """Typst.
-
-    Raises
-    ------
-    MissingPackageError
-        If it is not installed.
-    """
-    with installed_with("report", "PDF reports need Typst"):
-        import typst
-    return typst
-
-
 def pdf_bytes(document: Document, progress: Callable[[float], None]) -> bytes:
-    """The document as the content of a PDF file.
+    """The document as the content of a PDF file."""
+    import typst
 
-    Raises
-    ------
-    MissingPackageError
-        If Typst is not installed.
-    """
-    typst = typst_package()
     # Typst reads pictures from a folder only
     with tempfile.TemporaryDirectory() as name:
         folder = Path(name)

@@ -5,6 +5,7 @@ from __future__ import annotations
 import errno
 import os
 from collections.abc import Callable, Iterator, Mapping
+from importlib import import_module
 from pathlib import Path
 
 from linkwork.core.api.mechanism import Mechanism
@@ -16,17 +17,22 @@ from linkwork.core.foundation.files import (
     unwritten,
     written_folder,
 )
+from linkwork.core.foundation.loading import installed_with
 from linkwork.writers.report import motion_sections, sections
 from linkwork.writers.report.document import Block, Document, Facts, Section
-from linkwork.writers.report.docx import docx_bytes, docx_package
+from linkwork.writers.report.docx import docx_bytes
 from linkwork.writers.report.findings import FOLLOWED, SECTIONS, Findings, template_of
 from linkwork.writers.report.html import html_bytes, markdown_files
-from linkwork.writers.report.pdf import pdf_bytes, typst_package
+from linkwork.writers.report.pdf import pdf_bytes
 
 #: Formats of reports by suffix.
 FORMATS = (".html", ".pdf", ".docx", ".md")
 
-_PACKAGES = {".pdf": typst_package, ".docx": docx_package}
+#: The packages that formats need, with their names.
+_PACKAGES = {
+    ".pdf": ("typst", "PDF reports need Typst"),
+    ".docx": ("docx", "Word reports need python-docx"),
+}
 _SECTIONS: Mapping[str, tuple[str, Callable[[Findings], Iterator[Block]]]] = {
     "summary": ("Summary", sections.summary),
     "drawing": ("Drawing", sections.drawing),
@@ -128,7 +134,9 @@ def check_report_file(path: Path) -> None:
     """
     suffix = suffix_of(path, "a report", FORMATS)
     if suffix in _PACKAGES:
-        _PACKAGES[suffix]()
+        package, name = _PACKAGES[suffix]
+        with installed_with("report", f"{suffix} reports need {name}"):
+            import_module(package)
 
 
 def document_of(findings: Findings) -> Document:
