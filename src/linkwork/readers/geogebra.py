@@ -38,7 +38,7 @@ def read(source: Source) -> Assembly:
     root = xml_tree(data, source, "geogebra")
     construction = root.one("construction")
     if construction is None:
-        source.refuse("has no <construction>", root.line)
+        root.refuse("has no <construction>")
     return _Construction(source, construction).assembly
 
 
@@ -110,14 +110,14 @@ class _Construction:
         kind, label = element.get("type"), element.get("label")
         for tag in ("ggbscript", "javascript"):
             if element.one(tag) is not None:
-                self.source.leave_out(element.place, "script: nothing is executed")
+                element.leave_out("script: nothing is executed")
         if label not in made:
             if kind == "point":
                 self._add_point(label, element, fixed=True)
             elif kind in ("numeric", "angle"):
                 self.numbers[label] = element.one("slider") is not None
             else:
-                self.source.leave_out(element.place, f"element of type {kind[:20]}")
+                element.leave_out(f"element of type {kind[:20]}")
         trace = element.one("trace")
         if trace is not None and trace.get("val") == "true" and label in self.points:
             self.assembly.trace.append(self.points[label])
@@ -125,12 +125,12 @@ class _Construction:
     def _add_point(self, label: str, element: Element, fixed: bool = False) -> str:
         coords = element.one("coords")
         if coords is None:
-            self.source.refuse(f'point "{label[:40]}" has no coordinates', element.line)
+            element.refuse(f'point "{label[:40]}" has no coordinates')
         if label in self.points:
-            self.source.refuse(f'two points are called "{label[:40]}"', element.line)
-        x, y, z = (self.source.number(coords.get(c, "1"), c, coords.line) for c in "xyz")
+            element.refuse(f'two points are called "{label[:40]}"')
+        x, y, z = (coords.number(c, "1") for c in "xyz")
         if abs(z) < 1e-200:
-            self.source.refuse(f'point "{label[:40]}" is at infinity', coords.line)
+            coords.refuse(f'point "{label[:40]}" is at infinity')
         place = self.source.point(x / z, y / z, "a coordinate", coords.line)
         self.points[label] = self.assembly.add_point(label, place, fixed)
         return self.points[label]
@@ -145,7 +145,7 @@ class _Construction:
         elif constant and element is not None:
             self.numbers[label] = any(self.numbers[word] for word in _WORD.findall(text))
         else:
-            self.source.leave_out(expression.place, f'formula "{text[:40]}"')
+            expression.leave_out(f'formula "{text[:40]}"')
 
     def _command(self, element: Element) -> None:
         name, outputs = element.get("name"), self._outputs(element)
@@ -155,11 +155,11 @@ class _Construction:
         inputs = [v for _, v in sorted(entries, key=lambda entry: (len(entry[0]), entry[0]))]
         rule = _RULES.get(name)
         if rule is None or (not outputs and name != "Locus"):
-            self.source.leave_out(element.place, f"command {name[:40]}")
+            element.leave_out(f"command {name[:40]}")
             return
         why = rule(self, inputs, outputs)
         if why:
-            self.source.leave_out(element.place, f"command {name}: {why}")
+            element.leave_out(f"command {name}: {why}")
 
     def _is_constant(self, text: str) -> bool:
         """Whether a radius does not change: numbers, and segments on one link."""

@@ -22,8 +22,9 @@ _MOST = 50_000
 
 @dataclass(frozen=True)
 class Element:
-    """An element, its attributes and line; texts between elements are not kept."""
+    """An element of a source, its attributes and line; texts between elements are not kept."""
 
+    source: Source
     tag: str
     attributes: dict[str, str]
     line: int
@@ -34,9 +35,25 @@ class Element:
         """Where it is, for notes."""
         return f"line {self.line}"
 
+    def leave_out(self, what: str) -> None:
+        """Note that it, or a part of it, is not carried over."""
+        self.source.leave_out(self.place, what)
+
+    def refuse(self, message: str) -> NoReturn:
+        """Refuse the file for it; raises as :meth:`Source.refuse`."""
+        self.source.refuse(message, self.line)
+
     def get(self, name: str, default: str = "") -> str:
         """An attribute."""
         return self.attributes.get(name, default)
+
+    def number(self, name: str, default: str = "") -> float:
+        """An attribute that is a finite number."""
+        return self.source.number(self.get(name, default), name, self.line)
+
+    def numbers(self, name: str, count: int, default: str = "") -> list[float]:
+        """An attribute of so many numbers."""
+        return self.source.numbers(self.get(name, default), count, name, self.line)
 
     def all(self, tag: str) -> Iterator[Element]:
         """The children with a tag."""
@@ -56,7 +73,7 @@ def xml_tree(data: bytes, source: Source, *roots: str) -> Element:
         If it is not well-formed, has a document type or another root, or is too deep or too long.
     """
     parser = expat.ParserCreate()
-    top = Element("", {}, 1)
+    top = Element(source, "", {}, 1)
     nested, count = [top], itertools.count(1)
 
     def refuse(message: str) -> NoReturn:
@@ -68,7 +85,7 @@ def xml_tree(data: bytes, source: Source, *roots: str) -> Element:
             refuse(f"has elements nested deeper than {_DEEPEST} levels")
         if next(count) > _MOST:
             refuse(f"has more than {_MOST} elements")
-        element = Element(tag, attributes, parser.CurrentLineNumber)
+        element = Element(source, tag, attributes, parser.CurrentLineNumber)
         nested[-1].children.append(element)
         nested.append(element)
 
@@ -88,7 +105,7 @@ def xml_tree(data: bytes, source: Source, *roots: str) -> Element:
     root = top.children[0]
     if root.tag not in roots:
         expected = " or ".join(f"<{tag}>" for tag in roots)
-        source.refuse(f"begins with <{root.tag[:40]}>, expected {expected}", root.line)
+        root.refuse(f"begins with <{root.tag[:40]}>, expected {expected}")
     return root
 
 
