@@ -8,6 +8,7 @@ circles keep a distance, lines guide a point. Scripts in a file are never execut
 from __future__ import annotations
 
 import io
+import itertools
 import re
 import zipfile
 import zlib
@@ -85,19 +86,14 @@ class _Construction:
         self.assembly = Assembly(self.source, self.root.get("title"))
         self.assembly.length = "unit"
         self.elements = {element.get("label"): element for element in self.root.all("element")}
-        made: set[str] = set()
+        # elements of commands and formulas follow them: a point without one is free
+        outputs = (self._outputs(command) for command in self.root.all("command"))
+        formulas = (formula.get("label") for formula in self.root.all("expression"))
+        self.made = {*itertools.chain.from_iterable(outputs), *formulas}
+        steps = {"command": self._command, "expression": self._expression, "element": self._element}
         for element in self.root.children:
-            if element.tag == "command":
-                # elements of commands follow them: a point without a command is free
-                made |= set(self._outputs(element))
-        for element in self.root.children:
-            if element.tag == "command":
-                self._command(element)
-            elif element.tag == "expression":
-                made.add(element.get("label"))
-                self._expression(element)
-            elif element.tag == "element":
-                self._element(element, made)
+            if element.tag in steps:
+                steps[element.tag](element)
         if not self.assembly.inputs:
             self.source.leave_out("the construction", "the input: no point moves on a circle")
 
@@ -105,13 +101,13 @@ class _Construction:
         out = element.one("output")
         return [] if out is None else [name for name in out.attributes.values() if name]
 
-    def _element(self, element: Element, made: set[str]) -> None:
+    def _element(self, element: Element) -> None:
         """A free object; those of commands were made before."""
         kind, label = element.get("type"), element.get("label")
         for tag in ("ggbscript", "javascript"):
             if element.one(tag) is not None:
                 element.leave_out("script: nothing is executed")
-        if label not in made:
+        if label not in self.made:
             if kind == "point":
                 self._add_point(label, element, fixed=True)
             elif kind in ("numeric", "angle"):

@@ -10,7 +10,7 @@ import struct
 import tempfile
 import zipfile
 from collections.abc import Callable, Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 from xml.sax.saxutils import escape, quoteattr
@@ -105,20 +105,16 @@ def in_rows(stack: PlateStack) -> list[PlacedPlate]:
             f"a sheet of {width:g} mm is too narrow: the widest plate needs {widest:.4g} mm"
         )
     order = sorted(range(len(lying)), key=lambda k: (-sizes[k].imag, k))
-    places: dict[int, complex] = {}
     corner, row = complex(apart, apart), 0.0
     for k in order:
         if corner.real > apart and corner.real + sizes[k].real + apart > width:
             corner, row = complex(apart, corner.imag + row + apart), 0.0
-        places[k] = corner
+        shift = corner - box(lying[k].curves[:1])[0]
+        curves = tuple(curve.moved(shift, 1.0 + 0j) for curve in lying[k].curves)
+        lying[k] = replace(lying[k], curves=curves)
         corner += sizes[k].real + apart
         row = max(row, sizes[k].imag)
-    placed = []
-    for k, item in enumerate(lying):
-        shift = places[k] - box(item.curves[:1])[0]
-        curves = tuple(curve.moved(shift, 1.0 + 0j) for curve in item.curves)
-        placed.append(PlacedPlate(plate=item.plate, curves=curves, layer=item.layer, level=0.0))
-    return placed
+    return lying
 
 
 def _lying(stack: PlateStack) -> Iterator[PlacedPlate]:

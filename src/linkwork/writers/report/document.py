@@ -256,25 +256,16 @@ _WIDEST, _TALLEST = 150.0, 104.0  # printed [mm]: a heading and two figures fit 
 _SIDES = [re.compile(rb'<svg [^>]*\b%s="([\d.]+)pt"' % side) for side in (b"width", b"height")]
 
 
-@dataclass(frozen=True, kw_only=True)
-class FigureFile:
-    """The content of a picture and its printed width [mm]."""
-
-    number: int
-    content: bytes
-    width: float
-
-
 def figure_files(
     document: Document, kind: str, progress: Callable[[float], None]
-) -> Iterator[FigureFile]:
-    """Every figure as ``svg`` or ``png``."""
+) -> Iterator[tuple[int, bytes, float]]:
+    """The number, the content, ``svg`` or ``png``, and the printed width [mm] of every figure."""
     figures = [b for section in document.sections for b in section.blocks if isinstance(b, Figure)]
     for k, figure in enumerate(figures, 1):
         content = render(figure.picture, kind, dpi=_DPI)
         wide, high = _size(content)
         width = wide * min(1.0, _WIDEST / wide, _TALLEST / high)
-        yield FigureFile(number=figure.number, content=content, width=width)
+        yield figure.number, content, width
         progress(k / len(figures))
 
 

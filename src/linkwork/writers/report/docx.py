@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import io
 import zipfile
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from datetime import datetime
 from typing import Any
 
@@ -14,7 +14,6 @@ from linkwork.writers.report.document import (
     Equation,
     Facts,
     Figure,
-    FigureFile,
     Table,
     Text,
     figure_files,
@@ -35,7 +34,7 @@ def docx_bytes(document: Document, progress: Callable[[float], None]) -> bytes:
     """The document as the content of a .docx file."""
     import docx
 
-    pictures = {figure.number: figure for figure in figure_files(document, "png", progress)}
+    pictures = {number: picture for number, *picture in figure_files(document, "png", progress)}
     file = docx.Document()
     _Writer(file, pictures).write(document)
     buffer = io.BytesIO()
@@ -59,7 +58,7 @@ def _dateless(content: bytes) -> bytes:
 class _Writer:
     """Writes blocks at the end of a document."""
 
-    def __init__(self, file: Any, pictures: dict[int, FigureFile]) -> None:
+    def __init__(self, file: Any, pictures: Mapping[int, Sequence[Any]]) -> None:
         import docx.enum.text
         import docx.oxml
         import docx.shared
@@ -178,8 +177,8 @@ class _Writer:
         head.append(self.parse(f'<w:tblHeader xmlns:w="{_WORD}"/>'))
 
     def _figure(self, figure: Figure) -> None:
-        file = self.pictures[figure.number]
-        self.file.add_picture(io.BytesIO(file.content), width=self.shared.Mm(file.width))
+        content, width = self.pictures[figure.number]
+        self.file.add_picture(io.BytesIO(content), width=self.shared.Mm(width))
         self.file.paragraphs[-1].paragraph_format.keep_with_next = True
         self._caption(f"Figure {figure.number}. {figure.caption}", above=False)
 

@@ -15,6 +15,7 @@ from linkwork.core.foundation.errors import InputError, Problem, choices
 from linkwork.core.foundation.files import as_path
 from linkwork.core.foundation.values import Constant, Key, ListOf, PlainNumber, Text, as_told
 from linkwork.core.results.check import CheckReport
+from linkwork.core.results.listing.motion_listing import inputs_text
 from linkwork.core.results.motion import Motion
 from linkwork.core.results.position import Position
 from linkwork.core.textfile.keys import FORMAT, Form
@@ -248,6 +249,11 @@ class Findings:
         if not near.status.ok or near.input == position.input:
             return position
         return self.mechanism.solve(near.input, with_steps=True) if steps else near
+
+    @property
+    def where(self) -> str:
+        """The input of the position, ``at crank = 60 deg``; "" without an input."""
+        return inputs_text(self.position.input, self.position.input_units)
 
     @cached_property
     def circuits(self) -> Circuits:

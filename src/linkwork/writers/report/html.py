@@ -116,8 +116,8 @@ def markdown_files(
     """The text, and the pictures by their paths; ``stem`` is the name of the report's file."""
     folder = f"{stem}-pictures"
     pictures = {
-        f"{folder}/figure-{figure.number}.png": figure.content
-        for figure in figure_files(document, "png", progress)
+        f"{folder}/figure-{number}.png": content
+        for number, content, _ in figure_files(document, "png", progress)
     }
     lines = [f"# {_text(document.title)}", ""]
     if document.author_line:

@@ -34,16 +34,15 @@ def pdf_bytes(document: Document, progress: Callable[[float], None]) -> bytes:
     # Typst reads pictures from a folder only
     with tempfile.TemporaryDirectory() as name:
         folder = Path(name)
-        widths = {}
-        for figure in figure_files(document, "svg", progress):
-            (folder / f"{figure.number}.svg").write_bytes(figure.content)
-            widths[figure.number] = figure.width
+        widths: dict[int, float] = {}
+        for number, content, widths[number] in figure_files(document, "svg", progress):
+            (folder / f"{number}.svg").write_bytes(content)
         data = json.dumps(document_data(document, widths))
         (folder / "report.json").write_text(data, "utf-8")
         main = folder / "report.typ"
         main.write_text(template_text(main.name), "utf-8")
-        content: bytes = typst.compile(main, root=folder, format="pdf", timestamp=0)
-    return content
+        pdf: bytes = typst.compile(main, root=folder, format="pdf", timestamp=0)
+    return pdf
 
 
 def document_data(document: Document, widths: Mapping[int, float]) -> dict[str, Any]:

@@ -26,7 +26,6 @@ from linkwork.core.results.listing.motion_listing import (
     changes_text,
     evidence_fields,
     fixed,
-    inputs_text,
     lengths,
     radius_measure,
     short,
@@ -84,7 +83,7 @@ def drawing(findings: Findings) -> Iterator[Block]:
     scene = scene_of(findings.position, findings.motion, options=options)
     description = findings.model.description
     hidden = any("input" in question.hide for question in description.questions)
-    where = "" if hidden else inputs_text(findings.position.input, findings.position.input_units)
+    where = "" if hidden else findings.where
     traced_points = findings.motion is not None and findings.motion.skeleton.traced
     paths = ", with the paths of traced points" if traced_points else ""
     caption = f"The mechanism {where}".rstrip() + f"{paths}. Lengths in {description.length}."
@@ -96,11 +95,10 @@ def vectors(findings: Findings) -> Iterator[Block]:
     needs(findings.position.status.ok, NOT_FOUND)
     needs(findings.mechanism.loop_equations.loops, "the mechanism has no loop equations")
     loops = vector_loops(findings.model, findings.position)
-    where = inputs_text(findings.position.input, findings.position.input_units)
     options = SceneOptions(vectors=loops, title="", arrows=False)
     scene = scene_of(findings.position, None, options=options)
     yield Figure(
-        caption=f"The loop equations as vectors, head to tail, {where}".rstrip(" ,") + ".",
+        caption=f"The loop equations as vectors, head to tail, {findings.where}".rstrip(" ,") + ".",
         picture=scene,
     )
     unit = findings.model.description.length
@@ -118,7 +116,7 @@ def vectors(findings: Findings) -> Iterator[Block]:
             Column(header=f"y [{unit}]", cells=lengths(z.imag for z in values), align="point"),
         ]
         yield from tables(
-            f"Vectors of loop {k}, {pretty(loop.label)}, {where}".rstrip(" ,"), columns
+            f"Vectors of loop {k}, {pretty(loop.label)}, {findings.where}".rstrip(" ,"), columns
         )
 
 
@@ -222,9 +220,8 @@ def newton(findings: Findings) -> Iterator[Block]:
     needs(findings.mechanism.loop_equations.unknowns, "the mechanism has no unknowns")
     needs(position.steps, "a chosen configuration has no iterations from the guess")
     kinds = {v.name: Kind(v.kind) for v in findings.model.equations.unknowns}
-    where = inputs_text(position.input, position.input_units)
     yield Text(
-        text=f"Newton-Raphson solves F(x) = 0 from the guess of the file {where}".rstrip()
+        text=f"Newton-Raphson solves F(x) = 0 from the guess of the file {findings.where}".rstrip()
         + ": in each iteration J Δ = −F gives the change Δ of the unknowns, with J = ∂F/∂x "
         "(angles in radians)."
     )
