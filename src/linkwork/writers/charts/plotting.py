@@ -1,6 +1,6 @@
 """The chart of a kind of plot, and plots for notebooks and scripts.
 
-``plot_motion`` and ``plot_circuits`` implement ``motion.plot`` and ``circuits.plot``. New figures
+``motion.plot`` and ``circuits.plot`` draw these charts with :func:`plot`. New figures
 belong to pyplot, so that notebooks and ``matplotlib.pyplot.show`` display them.
 """
 
@@ -99,34 +99,7 @@ def _chart_of(
     raise UnknownNameError(f'there is no plot {what} of kind "{kind}" {options}')
 
 
-def plot_motion(
-    motion: Motion,
-    *names: str,
-    kind: str = "curves",
-    against: str = "",
-    wrapped: bool = False,
-    ax: Any = None,
-    theme: str = "light",
-    title: str | None = None,
-) -> Any:
-    """Plot a motion; see :meth:`linkwork.core.results.motion.Motion.plot`."""
-    chart = motion_plot(motion, names, kind=kind, against=against, wrapped=wrapped)
-    return _plot(chart, ax, theme, title)
-
-
-def plot_circuits(
-    circuits: Circuits,
-    *names: str,
-    kind: str = "circuits",
-    ax: Any = None,
-    theme: str = "light",
-    title: str | None = None,
-) -> Any:
-    """Plot circuits; see :meth:`linkwork.circuits.results.Circuits.plot`."""
-    return _plot(circuits_plot(circuits, names, kind=kind), ax, theme, title)
-
-
-def _plot(chart: Chart, ax: Any, theme: str, title: str | None) -> Any:
+def plot(chart: Chart, ax: Any, theme: str, title: str | None) -> Any:
     """Draw a chart into a new figure or into existing axes; returns one axes, or a tuple."""
     drawings = theme_named(theme, THEMES)
     if title is not None:

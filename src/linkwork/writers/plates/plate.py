@@ -85,20 +85,15 @@ class PlateOptions:
 
 
 @dataclass(frozen=True, kw_only=True)
-class Sizes:
+class Sizes(PlateOptions):
     """All sizes in millimetres; ``web`` is the least material between two openings."""
 
     width: float
     fillet: float
     pin: float
     clearance: float
-    kerf: float
     thickness: float
     gap: float
-    module: float | None
-    backlash: float | None
-    sheet: float | None
-    labels: bool
 
     @property
     def hole(self) -> float:
