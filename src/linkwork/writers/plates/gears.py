@@ -40,6 +40,16 @@ class Wheel:
     pressure: float
     backlash: float
 
+    @classmethod
+    def of(
+        cls, disc: DiscFigure, millimetres: float, pressure: float, sizes: Sizes, phase: float = 0.0
+    ) -> Wheel:
+        """A disc with teeth, of the length unit of the file in millimetres."""
+        assert disc.teeth is not None
+        module = 2.0 * millimetres * disc.radius / disc.teeth
+        backlash = sizes.backlash_of(module)
+        return cls(disc=disc, module=module, phase=phase, pressure=pressure, backlash=backlash)
+
     @property
     def teeth(self) -> int:
         """The number of teeth."""
@@ -92,18 +102,9 @@ def gear_meshes(
     wheels: dict[DiscFigure, Wheel] = {}
     for mesh, pair in zip(figures, pairs, strict=True):
         for disc in pair:
-            assert disc.teeth is not None
-            module = 2.0 * millimetres * disc.radius / disc.teeth
-            wheels.setdefault(
-                disc,
-                Wheel(
-                    disc=disc,
-                    module=module,
-                    phase=phases[disc] - angles[disc.link],
-                    pressure=steep[mesh.name],
-                    backlash=sizes.backlash_of(module),
-                ),
-            )
+            phase = phases[disc] - angles[disc.link]
+            wheel = Wheel.of(disc, millimetres, steep[mesh.name], sizes, phase)
+            wheels.setdefault(disc, wheel)
     for mesh, pair in zip(figures, pairs, strict=True):
         _check_mesh(mesh, pair, phases, wheels, points, millimetres)
     return [(mesh.name, wheels[a], wheels[b]) for mesh, (a, b) in zip(figures, pairs, strict=True)]
@@ -129,10 +130,15 @@ def _check_mesh(
         )
     apart = millimetres * abs(points[other.center] - points[one.center])
     if touches(wheels[one], wheels[other], apart):
-        raise InputError(
-            f'the teeth of "{mesh.name}" touch where they should not, with '
-            f"{one.teeth} and {other.teeth} teeth: give more teeth, or more backlash"
-        )
+        raise touching_teeth(mesh.name, f"{one.teeth} and {other.teeth} teeth")
+
+
+def touching_teeth(name: str, teeth: str) -> InputError:
+    """Teeth of a mesh touch."""
+    return InputError(
+        f'the teeth of "{name}" touch where they should not, with {teeth}: give more teeth, or '
+        "more backlash"
+    )
 
 
 def _with_teeth(

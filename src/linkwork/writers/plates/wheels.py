@@ -18,7 +18,13 @@ from linkwork.core.mechanism.bodies import DiscFigure
 from linkwork.core.mechanism.linkage import Linkage
 from linkwork.core.mechanism.part.gears import ToothedPart
 from linkwork.writers.plates.bodies import Guideway, RigidBody
-from linkwork.writers.plates.gears import FEWEST, Wheel, involute_outline, touch_within_a_pitch
+from linkwork.writers.plates.gears import (
+    FEWEST,
+    Wheel,
+    involute_outline,
+    touch_within_a_pitch,
+    touching_teeth,
+)
 from linkwork.writers.plates.outlines import Outline, circle, shapely, shapes_of
 from linkwork.writers.plates.plate import Opening, Plate, Sizes, round_holes
 
@@ -178,19 +184,10 @@ def rack_meshes(
             disc = next(f for f in part.figures(linkage, {}) if isinstance(f, DiscFigure))
             size = 2.0 * millimetres * disc.radius
             teeth = FEWEST if sizes.module is None else max(1, round(size / sizes.module))
-            blank = Wheel(
-                disc=replace(disc, teeth=teeth),
-                module=size / teeth,
-                phase=0.0,
-                pressure=part.pressure(linkage),
-                backlash=sizes.backlash_of(size / teeth),
-            )
+            blank = Wheel.of(replace(disc, teeth=teeth), millimetres, part.pressure(linkage), sizes)
             pinion = known.get(disc.key, blank)
             if _touch(pinion):
-                raise InputError(
-                    f'the teeth of "{part.name}" touch where they should not, with '
-                    f"{pinion.teeth} teeth of the pinion: give more teeth, or more backlash"
-                )
+                raise touching_teeth(part.name, f"{pinion.teeth} teeth of the pinion")
             name, factor = coupling.slide
             yield RackMesh(name=part.name, pinion=pinion, guide=name, side=-factor)
 
