@@ -70,6 +70,11 @@ def _output_option(about: str) -> Any:
     return click.option("-o", "--output", metavar="PATH", required=True, help=about)
 
 
+def _common_options(command: Any) -> Any:
+    """``--set``, ``--json`` and ``--debug``."""
+    return set_option(json_option(debug_option(command)))
+
+
 # ----------------------------------------------------------------------
 # ``linkwork plot``
 
@@ -97,9 +102,7 @@ def _output_option(about: str) -> Any:
 @configuration_option
 @through_option
 @change_points_option
-@set_option
-@json_option
-@debug_option
+@_common_options
 @click.pass_context
 def plot_command(
     context: click.Context,
@@ -180,9 +183,7 @@ def _circuits(mechanism: Mechanism, kind: str, options: dict[str, Any]) -> Circu
 @_output_option("Program file: .py (NumPy), .m (Octave, MATLAB), .c (C99), .js, .st (IEC 61131-3).")
 @range_options
 @configuration_option
-@set_option
-@json_option
-@debug_option
+@_common_options
 def program_command(
     file: str, output: str, changes: tuple[str, ...], as_json: bool, **sweeping: Any
 ) -> None:
@@ -229,9 +230,7 @@ def program_command(
 @click.option("--date", metavar="TEXT", help="The date as it is printed; none by default.")
 @at_option
 @configuration_option
-@set_option
-@json_option
-@debug_option
+@_common_options
 def report_command(
     file: str,
     output: str,
@@ -307,9 +306,7 @@ def _size_options(command: Any) -> Any:
 @click.option("--bill", metavar="PATH", help="Write the bill of materials as CSV.")
 @range_options
 @configuration_option
-@set_option
-@json_option
-@debug_option
+@_common_options
 def plates_command(
     file: str,
     output: str,
@@ -399,9 +396,7 @@ def _cell(value: float) -> str:
 @_output_option("Robot file: .mjcf, .urdf or .sdf.")
 @at_option
 @configuration_option
-@set_option
-@json_option
-@debug_option
+@_common_options
 def robot_command(
     file: str,
     output: str,
@@ -445,9 +440,7 @@ def _text_command(form: str) -> click.Command:
     )
     @at_option
     @configuration_option
-    @set_option
-    @json_option
-    @debug_option
+    @_common_options
     def command(
         file: str,
         output: str | None,
@@ -494,9 +487,7 @@ def _usual_command(kind: str) -> click.Command:
     @click.command(kind, help=f"Write a {kind}.")
     @file_argument
     @_output_option("The file.")
-    @set_option
-    @json_option
-    @debug_option
+    @_common_options
     def command(file: str, output: str, changes: tuple[str, ...], as_json: bool) -> None:
         is_book = output.lower().endswith(".xlsx")
         check_outputs(file, None if is_book else output, workbook=output if is_book else None)
