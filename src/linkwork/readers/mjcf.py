@@ -245,7 +245,7 @@ class _World:
             at = one.pose.place(element.numbers("anchor", 3, "0 0 0"))
             ends = [(one.name, at), (two.name, at)]
         if planar.link(ends[0][0]) == planar.link(ends[1][0]):
-            planar.element.leave_out("connect inside one link")
+            planar.source.leave_out(element.place, "connect inside one link")
         else:
             planar.pin(element.get("name") or f"{ends[0][0]}_{ends[1][0]}", *ends)
 

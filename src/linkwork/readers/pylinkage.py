@@ -259,7 +259,7 @@ class _Mechanism(_Reading):
         axis = entry.get("axis", [1.0, 0.0])
         if not isinstance(axis, list) or len(axis) != 2:
             self.refuse("joints", k, "needs axis, a list of two numbers")
-        along = self.source.point(*axis, f"the axis of joints[{k}]")
+        along = self.source.point(axis[0], axis[1], f"the axis of joints[{k}]")
         if not along:
             self.refuse("joints", k, "has an axis of length zero")
         line = self.assembly.guide(GROUND, point, along)

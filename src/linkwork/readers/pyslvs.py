@@ -104,7 +104,7 @@ def _joint(source: Source, count: int, term: _Term) -> JointRow:
     return JointRow(
         place=place,
         kind=kind.word,
-        at=source.point(*at, "a coordinate", line),
+        at=source.point(at[0], at[1], "a coordinate", line),
         links=tuple(fields.get("L", ())),
         angle=math.radians(source.number(angle[0], "the angle", line)),
         name=f"P{count - 1}",

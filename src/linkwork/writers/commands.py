@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import Any
 
@@ -65,12 +65,14 @@ from linkwork.writers.report.report import check_report_file, write_report
 from linkwork.writers.robot.files import check_robot_file, robot_of
 from linkwork.writers.writing import kind_of, writers
 
+_Decorator = Callable[[Callable[..., Any]], Callable[..., Any]]
 
-def _output_option(about: str) -> Any:
+
+def _output_option(about: str) -> _Decorator:
     return click.option("-o", "--output", metavar="PATH", required=True, help=about)
 
 
-def _common_options(command: Any) -> Any:
+def _common_options(command: Callable[..., Any]) -> Callable[..., Any]:
     """``--set``, ``--json`` and ``--debug``."""
     return set_option(json_option(debug_option(command)))
 
@@ -291,7 +293,7 @@ _SIZES = (
 )
 
 
-def _size_options(command: Any) -> Any:
+def _size_options(command: Callable[..., Any]) -> Callable[..., Any]:
     for name, about in reversed(_SIZES):
         command = click.option(f"--{name}", type=float, metavar="LENGTH", help=about)(command)
     return command
