@@ -163,17 +163,17 @@ def _plates_of(part: int, pins: Sequence[frozenset[int]]) -> frozenset[int]:
 
 
 def meet(conflict: Conflict, layers: Sequence[int], pins: Sequence[frozenset[int]]) -> bool:
-    """Whether two parts share a layer; plates at -1 have none yet."""
-    lows, highs = zip(*(_occupied(part, layers, pins) for part in conflict), strict=True)
-    return max(lows) <= min(highs)
+    """Whether two parts share a layer; plates without one have the layer -1."""
+    (low, high), (below, above) = (_occupied(part, layers, pins) for part in conflict)
+    return max(low, below) <= min(high, above)
 
 
 def _occupied(part: int, layers: Sequence[int], pins: Sequence[frozenset[int]]) -> tuple[int, int]:
     """The first and the last layer of a part; a pin has those between its outer plates."""
-    held = [layers[k] for k in _plates_of(part, pins) if layers[k] >= 0]
-    if not held:
-        return 1, 0
-    return (held[0], held[0]) if part >= 0 else (min(held) + 1, max(held) - 1)
+    if part >= 0:
+        return layers[part], layers[part]
+    held = [layers[k] for k in pins[-1 - part] if layers[k] >= 0]
+    return (min(held) + 1, max(held) - 1) if held else (1, 0)
 
 
 # ----------------------------------------------------------------------
