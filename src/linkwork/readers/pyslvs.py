@@ -33,17 +33,17 @@ def read(source: Source) -> Assembly:
         )
     assembly = Assembly(source)
     joints = enumerate(whole.parts, start=1)
-    add_joints(assembly, [_joint(source, count, term) for count, term in joints])
+    add_joints(assembly, [_joint(parser, count, term) for count, term in joints])
     source.leave_out("the expression", "the input: an expression does not state it")
     return assembly
 
 
 @dataclass(frozen=True)
 class _Term:
-    """A word with the terms in brackets behind it."""
+    """A word that ends ``at`` this character, with the terms in brackets behind it."""
 
     word: str
-    line: int
+    at: int
     parts: list[_Term]
 
 
@@ -55,7 +55,11 @@ class _Parser:
 
     @property
     def line(self) -> int:
-        return self.text.count("\n", 0, self.at) + 1
+        return self.line_of(self.at)
+
+    def line_of(self, at: int) -> int:
+        """The line of a character."""
+        return self.text.count("\n", 0, at) + 1
 
     def _next(self) -> str:
         match = _TOKEN.match(self.text, self.at)
@@ -75,7 +79,7 @@ class _Parser:
         """A word, with or without brackets."""
         if depth > _DEEPEST:
             self.source.refuse("a bracket too many", self.line)
-        line, word = self.line, self.take()
+        at, word = self.at, self.take()
         parts: list[_Term] = []
         if self.word == "[":
             self.take("[")
@@ -84,11 +88,11 @@ class _Parser:
                 if self.word != "]":
                     self.take(",")
             self.take("]")
-        return _Term(word, line, parts)
+        return _Term(word, at, parts)
 
 
-def _joint(source: Source, count: int, term: _Term) -> JointRow:
-    place, line = f"joint {count}", term.line
+def _joint(parser: _Parser, count: int, term: _Term) -> JointRow:
+    source, place, line = parser.source, f"joint {count}", parser.line_of(term.at)
     kind, *parts = term.parts or [term]
     if term.word != "J" or kind.word not in ("R", "P", "RP"):
         source.refuse(f'"{kind.word[:40]}" is not a joint R, P or RP', line)
