@@ -9,7 +9,6 @@ from pathlib import Path
 import linkwork as lw
 from linkwork.writers.report.document import Figure, Table
 from linkwork.writers.report.findings import Findings, template_of
-from linkwork.writers.report.gathering import findings
 from linkwork.writers.report.report import document_of, report_of
 
 __all__ = ["READERS", "read_report"]
@@ -21,15 +20,15 @@ _TEMPLATE = template_of("engineer")
 
 @cache
 def _found(name: str) -> Findings:
-    return findings(lw.example(name), _TEMPLATE, None, None, lambda part: None)
+    return Findings(lw.example(name), _TEMPLATE)
 
 
 def read_report(name: str, suffix: str, folder: Path) -> str:
     """The size of a report, and whether its tables and figures are those of the document."""
     found = _found(name)
     file = folder / f"report{suffix}"
-    file.write_bytes(report_of(found, _TEMPLATE, file).content)
-    document = document_of(found, _TEMPLATE)
+    file.write_bytes(report_of(found, file)[0])
+    document = document_of(found)
     blocks = [block for section in document.sections for block in section.blocks]
     tables = [block.number for block in blocks if isinstance(block, Table)]
     figures = [block.number for block in blocks if isinstance(block, Figure)]

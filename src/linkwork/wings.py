@@ -137,7 +137,7 @@ WINGS = (
             ),
             "robot": Writer("linkwork.writers.robot.files:write_robot", (".mjcf", ".sdf", ".urdf")),
             "report": Writer(
-                "linkwork.writers.report.gathering:write_report", (".html", ".pdf", ".docx", ".md")
+                "linkwork.writers.report.report:write_report", (".html", ".pdf", ".docx", ".md")
             ),
         },
     ),

@@ -12,7 +12,6 @@ import numpy as np
 from linkwork.core.textfile.reader import read_text
 from linkwork.core.textfile.writer import write_text
 from linkwork.readers.formats import FORMATS, read_foreign
-from linkwork.readers.importing import Imported
 from tests.campaigns.fuzzing.odd import NAMES, NUMBERS, pick
 from tests.campaigns.fuzzing.texts import changed_bytes
 from tests.campaigns.fuzzing.witness import Witness
@@ -44,22 +43,16 @@ def import_campaign(part: int, count: int) -> tuple[Counter[str], list[str]]:
 
 
 def _read(witness: Witness, data: bytes, name: str, wanted: str | None) -> None:
-    reading = witness.call("read", lambda: read_foreign(data, name, wanted))
-    if reading is None:
+    found = witness.call("read", lambda: read_foreign(data, name, wanted))
+    if found is None:
         return
     witness.counts["files read"] += 1
-    found = Imported(
-        description=reading.linkage,
-        format=reading.format,
-        left_out=reading.left_out,
-        renamed=reading.renamed,
-    )
     if not str(found).strip():
         witness.false.append("no summary")
     witness.call("make", found.missing)
-    text = witness.call("write", lambda: write_text(reading.linkage))
+    text = witness.call("write", lambda: write_text(found.description))
     back = None if text is None else witness.call("read back", lambda: read_text(text))
-    if back is not None and back.description != reading.linkage:
+    if back is not None and back.description != found.description:
         witness.false.append("another linkage is read back from its file")
     elif back is None:
         witness.false.append("its file is refused")

@@ -90,8 +90,8 @@ def test_a_time_without_a_speed_is_told(run: Run, folder: Path) -> None:
     done = run("plot", _library(folder, "klann-leg"), "-o", "x.svg", "--against", "time")
     assert (done.exit_code, done.stdout) == (2, "")
     assert done.stderr == (
-        "Error: a plot over time needs the speed of crank: set it in [input], as in speed\n"
-        '  = "60 rpm", or plot against crank\n'
+        "Error: a plot over time needs the speed of crank: set it in [input], or plot\n"
+        "  against crank\n"
     )
 
 

@@ -195,8 +195,7 @@ def test_a_polar_plot_needs_an_angle() -> None:
     with pytest.raises(InputError) as raised:
         motion_plot(motion, kind="polar")
     assert str(raised.value) == (
-        'a polar plot needs an angle, and "d" is not one: name an angle with against= '
-        '(--against), as in "θ2"'
+        'a polar plot needs an angle, and "d" is not one: name an angle with against= (--against)'
     )
     [ax] = axes_of(motion_plot(motion, ["d"], kind="polar", against="θ2"))
     np.testing.assert_allclose(np.asarray(curves_of(ax)[0].get_xdata()), np.radians(motion["θ2"]))

@@ -46,7 +46,7 @@ def round_trip(name: str, form: str) -> RoundTrip | str:
     if form == "pmks":
         # the link has thousandths: this is what it describes
         mechanism, places = _rounded(linkage, places)
-    back = read_foreign(made.text.encode(), f"{name}.txt").linkage
+    back = read_foreign(made.text.encode(), f"{name}.txt").description
     return compared(mechanism, places, back)
 
 
@@ -64,7 +64,7 @@ def robot_round_trip(name: str) -> RoundTrip | str:
     if any("coupling of joints" in left.what for left in reading.left_out):
         return "not compared: couplings are left out"
     metre = float(LENGTHS[linkage.length])
-    return compared(mechanism, start_places(mechanism), reading.linkage, metre)
+    return compared(mechanism, start_places(mechanism), reading.description, metre)
 
 
 def start_places(mechanism: lw.Mechanism) -> dict[str, complex]:

@@ -23,7 +23,7 @@ _MOTOR = '<actuator><motor joint="O"/></actuator>'
 def _read(bodies: str, equality: str, rest: str = _MOTOR) -> tuple[Linkage, tuple[LeftOut, ...]]:
     text = f"<mujoco><worldbody>{bodies}</worldbody><equality>{equality}</equality>{rest}</mujoco>"
     found = read_foreign(text.encode(), "gap.mjcf")
-    return found.linkage, found.left_out
+    return found.description, found.left_out
 
 
 def test_lengths_of_links_whose_sites_are_apart_are_those_of_their_frames() -> None:
@@ -119,4 +119,4 @@ def test_a_body_without_a_joint_is_a_point_of_its_parent() -> None:
         '<axis xyz="0 0 1"/></joint><joint name="fixed" type="fixed"><parent link="arm"/>'
         '<child link="tip"/><origin xyz="0.12 0 0"/></joint></robot>'
     )
-    assert read_foreign(urdf.encode(), "arm.urdf").linkage.links["arm"] == ("O", "tip")
+    assert read_foreign(urdf.encode(), "arm.urdf").description.links["arm"] == ("O", "tip")

@@ -28,7 +28,7 @@ _BAR: dict[str, Any] = {
 
 
 def _read(name: str) -> Linkage:
-    return read_foreign(SAMPLES[name], name).linkage
+    return read_foreign(SAMPLES[name], name).description
 
 
 @pytest.mark.parametrize(
@@ -97,9 +97,9 @@ def test_lengths_of_linkage_files_are_in_96ths_of_an_inch(
         '<connector id="1"/></Link></linkage2>'
     )
     found = read_foreign(text.encode(), "ten.linkage2")
-    assert found.linkage.length == unit
-    assert found.linkage.points["P1"] == pytest.approx((size, 0.0), rel=1e-14)
-    assert found.linkage.inputs[0].to == pytest.approx(12 * size, rel=1e-14)
+    assert found.description.length == unit
+    assert found.description.points["P1"] == pytest.approx((size, 0.0), rel=1e-14)
+    assert found.description.inputs[0].to == pytest.approx(12 * size, rel=1e-14)
     unknown = 'unknown "Leagues", mm is assumed'
     assert (unknown in {own.what for own in found.left_out}) == (shown == "Leagues")
 
@@ -156,13 +156,13 @@ def test_names_are_kept_where_formulas_can_use_them() -> None:
     rows = b"ground,2,R,0,0,0,ffft\n2,e,R,30,0\ne,pi,R,90,50\npi,ground,R,80,0"
     read = read_foreign(rows, "bar.pmks")
     assert read.renamed == {'link "2"': "link2", 'link "e"': "linke", 'link "pi"': "linkpi"}
-    assert lw.Mechanism(read.linkage).sweep(step=30).found.any()
+    assert lw.Mechanism(read.description).sweep(step=30).found.any()
 
 
 def test_links_with_two_common_points_are_one() -> None:
     rows = b"ground,a,R,0,0,0,ffft\na,b,R,30,0\na,b,R,40,10\nb,c,R,90,50\nc,ground,R,80,0"
     read = read_foreign(rows, "bar.pmks")
-    assert set(read.linkage.links) == {"ground", "a", "c"}
+    assert set(read.description.links) == {"ground", "a", "c"}
     assert str(read.left_out[0]) == 'link "b": as a separate link: by P2 and P3 it moves with "a"'
 
 
@@ -177,7 +177,7 @@ def test_no_file_is_opened_and_no_address_is_called(
 
     monkeypatch.setattr(builtins, "open", refuse)
     monkeypatch.setattr(socket, "socket", refuse)
-    assert read_foreign(SAMPLES[name], name).linkage.points
+    assert read_foreign(SAMPLES[name], name).description.points
 
 
 _XML = '<?xml version="1.0"?>'

@@ -45,13 +45,13 @@ def _notes(data: bytes, name: str) -> list[str]:
 
 def test_sections_of_mujoco_are_merged_and_inactive_equalities_are_left_out() -> None:
     text = SAMPLES["bar.mjcf"].decode()
-    whole = read_foreign(text.encode(), "bar.mjcf").linkage
+    whole = read_foreign(text.encode(), "bar.mjcf").description
     # all bodies in a second section, the angles after a first compiler
     parts = text.replace("<worldbody>", "<compiler/><worldbody/><worldbody>")
-    assert read_foreign(parts.encode(), "bar.mjcf").linkage == whole
+    assert read_foreign(parts.encode(), "bar.mjcf").description == whole
     weld = '<weld body1="crank" body2="world" active="false"/>'
     added = text.replace("</equality>", f"{weld}</equality>")
-    assert read_foreign(added.encode(), "bar.mjcf").linkage == whole
+    assert read_foreign(added.encode(), "bar.mjcf").description == whole
     assert any("inactive <weld>" in note for note in _notes(added.encode(), "bar.mjcf"))
 
 
@@ -60,7 +60,9 @@ def test_polylines_are_closed_by_a_bit_of_their_flags(flags: int) -> None:
     # a pin on the closing piece belongs to the link
     pin = "  0\nCIRCLE\n  8\n0\n 10\n47\n 20\n61\n 40\n3\n  0\nLINE\n"
     text = dxf_text().replace("  0\nLINE\n", pin, 1)
-    linkage = read_foreign(text.replace(" 70\n1\n", f" 70\n{flags}\n").encode(), "b.dxf").linkage
+    linkage = read_foreign(
+        text.replace(" 70\n1\n", f" 70\n{flags}\n").encode(), "b.dxf"
+    ).description
     assert [name for name, own in linkage.links.items() if "P6" in own] == ["L2"]
 
 
@@ -74,13 +76,13 @@ def test_what_a_drawing_shows_from_behind_or_on_its_sheet_is_left_out() -> None:
     # a title block: a circle at a pin, and lines
     sheet = "  0\nCIRCLE\n 67\n1\n  8\n0\n 10\n24\n 20\n32\n 40\n50\n  0\nLINE\n"
     added = text.replace("  0\nLINE\n", sheet, 1)
-    assert read_foreign(added.encode(), "bar.dxf").linkage == (
-        read_foreign(text.encode(), "bar.dxf").linkage
+    assert read_foreign(added.encode(), "bar.dxf").description == (
+        read_foreign(text.encode(), "bar.dxf").description
     )
 
 
 def test_joints_that_follow_a_follower_have_its_range() -> None:
-    linkage = read_foreign(_ARM.format(one="").encode(), "arm.urdf").linkage
+    linkage = read_foreign(_ARM.format(one="").encode(), "arm.urdf").description
     turns = [(which.from_, which.to) for which in linkage.inputs]
     spans = [float(b) - float(a) for a, b in turns]  # type: ignore[arg-type]  # numbers
     assert spans[1] == pytest.approx(2 * spans[0])
@@ -104,7 +106,7 @@ def test_a_command_of_eleven_objects_keeps_their_order() -> None:
         '<element type="point" label="half"><coords x="81" y="50" z="1"/></element></construction>'
     )
     text = GEOGEBRA.replace("</construction>", added)
-    linkage = read_foreign(text.encode(), "bar.xml").linkage
+    linkage = read_foreign(text.encode(), "bar.xml").description
     # the last side joins B and A, which are on one link
     assert [name for name, own in linkage.links.items() if "half" in own] == ["AB"]
 
@@ -112,7 +114,8 @@ def test_a_command_of_eleven_objects_keeps_their_order() -> None:
 def test_an_import_does_not_depend_on_the_order_of_sets() -> None:
     script = (
         "import sys; from linkwork.readers.formats import read_foreign as read\n"
-        "found = read(sys.argv[1].encode(), 'chain.pyslvs'); print(found.linkage, found.left_out)"
+        "found = read(sys.argv[1].encode(), 'chain.pyslvs'); "
+        "print(found.description, found.left_out)"
     )
     seen = {
         subprocess.run(

@@ -50,7 +50,9 @@ def test_a_wrong_coordinate_would_be_seen() -> None:
     right = lw.readers.exported(lw.example("four-bar"), "pyslvs", at=60).text
     wrong = right.replace("P[100.0, 0.0]", "P[100.1, 0.0]")
     assert wrong != right
-    at = [read_foreign(text.encode(), "x.pyslvs").linkage.points["P3"] for text in (right, wrong)]
+    at = [
+        read_foreign(text.encode(), "x.pyslvs").description.points["P3"] for text in (right, wrong)
+    ]
     assert at[0] != at[1]
 
 

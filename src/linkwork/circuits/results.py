@@ -248,9 +248,8 @@ class Circuits(NamedSequence[Circuit]):
         UnknownNameError
             For a name that does not exist.
         """
-        return wings.use("writers.charts.plotting").plot_circuits(
-            self, *names, kind=kind, ax=ax, theme=theme, title=title
-        )
+        plotting = wings.use("writers.charts.plotting")
+        return plotting.plot(plotting.circuits_plot(self, names, kind=kind), ax, theme, title)
 
     def __repr__(self) -> str:
         return str(circuits_summary(self))

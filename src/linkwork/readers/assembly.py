@@ -61,24 +61,30 @@ class LeftOut:
         return f"{self.places[0]}{f' and {more} more' if more else ''}: {self.what}"
 
 
-class Source:
-    """The bytes of a file, its name for messages, and the parts omitted so far."""
+class Notes:
+    """The parts that were omitted so far."""
 
-    def __init__(self, data: bytes, name: str) -> None:
-        self.data, self.name = data, name
-        self._left_out: dict[str, dict[str, None]] = {}
-        if len(data) > LARGEST:
-            self.refuse(f"has more than {LARGEST / 1e6:.0f} MB: more is not read")
+    def __init__(self) -> None:
+        self._places: dict[str, dict[str, None]] = {}
 
     @property
     def left_out(self) -> tuple[LeftOut, ...]:
         """What was left out, in the file's order."""
-        left_out = self._left_out.items()
-        return tuple(LeftOut(what=what, places=tuple(places)) for what, places in left_out)
+        return tuple(LeftOut(what=what, places=tuple(at)) for what, at in self._places.items())
 
     def leave_out(self, place: str, what: str) -> None:
         """Note a part that is not carried over."""
-        self._left_out.setdefault(what, {})[place] = None
+        self._places.setdefault(what, {})[place] = None
+
+
+class Source(Notes):
+    """The bytes of a file, its name for messages, and the parts omitted so far."""
+
+    def __init__(self, data: bytes, name: str) -> None:
+        super().__init__()
+        self.data, self.name = data, name
+        if len(data) > LARGEST:
+            self.refuse(f"has more than {LARGEST / 1e6:.0f} MB: more is not read")
 
     def refuse(
         self, message: str, line: int | None = None, key: Sequence[str | int] = ()
@@ -115,6 +121,10 @@ class Source:
         if not abs(number) <= LARGEST_NUMBER:
             self.refuse(f"{what} is {_shown(entry)}: at most {LARGEST_NUMBER:g}", line)
         return number
+
+    def point(self, x: object, y: object, what: str, line: int | None = None) -> complex:
+        """Two finite numbers as x + iy."""
+        return complex(self.number(x, what, line), self.number(y, what, line))
 
     def numbers(self, text: str, count: int, what: str, line: int | None = None) -> list[float]:
         """So many numbers between spaces."""
@@ -210,6 +220,15 @@ class Assembly:
     def carriers(self, *points: str) -> list[str]:
         """Ground and links that carry all of these points."""
         return [name for name in (GROUND, *self.links) if self.carries(name).issuperset(points)]
+
+    def carrier(self, *points: str) -> str | None:
+        """Ground, or the first link, that carries all of these points."""
+        return next(iter(self.carriers(*points)), None)
+
+    def drive(self, link: str, on: str, **fields: Any) -> None:
+        """Drive the angle of a link relative to another one, or to ground."""
+        relative = None if on == GROUND else on
+        self.inputs.append(Input(link=link, relative_to=relative, **fields))
 
     def guide(
         self, on: str, point: str, along: complex, at: complex | None = None
@@ -478,13 +497,12 @@ def drive_joint(
     """Drive the angle between the two links at a pin; all points must be on their links before."""
     moving = [name for name in links if not assembly.carries(name) <= assembly.fixed]
     # links whose points are all fixed are part of ground
-    fixed = len(moving) < len(links)
-    if len(moving) + fixed != 2:
-        message = f"input at a pin of {len(moving) + fixed} links: name two of them"
+    joined = [GROUND, *moving] if len(moving) < len(links) else moving
+    if len(joined) != 2:
+        message = f"input at a pin of {len(joined)} links: name two of them"
         assembly.source.leave_out(place, message)
         return
-    against = None if fixed else moving[0]
-    assembly.inputs.append(Input(link=moving[-1], relative_to=against, speed=speed))
+    assembly.drive(joined[1], joined[0], speed=speed)
 
 
 # ----------------------------------------------------------------------
@@ -516,7 +534,7 @@ class Exported:
     left_out: tuple[LeftOut, ...]
 
 
-class Drawn:
+class Drawn(Notes):
     """A linkage and the places of its points in an assembled position; notes on omitted parts.
 
     Raises
@@ -526,8 +544,8 @@ class Drawn:
     """
 
     def __init__(self, linkage: Linkage, places: Mapping[str, complex]) -> None:
+        super().__init__()
         self.linkage, self.places = linkage, places
-        self._notes: dict[str, dict[str, None]] = {}
         for key, part in linkage.keyed_parts:
             if part.pairs(linkage) == KinematicPairs():  # it constrains nothing
                 self.leave_out(part.label, part.title.lower())
@@ -544,14 +562,9 @@ class Drawn:
             if table != (None, None, None) or which.law is not None:
                 self.leave_out(which.column, "range or law of the input")
 
-    @property
-    def left_out(self) -> tuple[LeftOut, ...]:
-        """What was left out."""
-        return tuple(LeftOut(what=w, places=tuple(p)) for w, p in self._notes.items())
-
     def leave_out(self, place: str, what: str) -> None:
-        """Note a part that is not carried over."""
-        self._notes.setdefault(what, {})[f'"{place}"'] = None
+        """Note a part, by its name, that is not carried over."""
+        super().leave_out(f'"{place}"', what)
 
     def joints(self) -> Iterator[JointRow]:
         """Pins of points, slots, and sliders; a slider lies at a point that also has a pin."""
@@ -560,21 +573,20 @@ class Drawn:
             if point not in slotted:
                 carriers = self._carriers(point)
                 yield JointRow(place=point, kind="R", at=at, links=carriers, name=point)
-        for slot in self.linkage.slots:
-            moving = self._carriers(slot.point)
-            yield self._slide("RP", slot.name, slot.point, (slot.on, *moving), slot.line)
-        for slider in self.linkage.sliders:
-            links = (slider.on, slider.link)
-            yield self._slide("P", slider.name, slider.points[0], links, slider.line)
-
-    def _slide(
-        self, kind: str, name: str, point: str, links: tuple[str, ...], line: tuple[str, str]
-    ) -> JointRow:
-        a, b = (self.places[end] for end in line)
-        angle = phase(b - a)
-        return JointRow(
-            place=name, kind=kind, at=self.places[point], links=links, angle=angle, name=point
-        )
+        slides: list[tuple[str, Any, str, tuple[str, ...]]] = [
+            *(("RP", s, s.point, self._carriers(s.point)) for s in self.linkage.slots),
+            *(("P", s, s.points[0], (s.link,)) for s in self.linkage.sliders),
+        ]
+        for kind, part, point, moving in slides:
+            a, b = (self.places[end] for end in part.line)
+            yield JointRow(
+                place=part.name,
+                kind=kind,
+                at=self.places[point],
+                links=(part.on, *moving),
+                angle=phase(b - a),
+                name=point,
+            )
 
     def _carriers(self, point: str) -> tuple[str, ...]:
         return tuple(name for name, points in self.linkage.links.items() if point in points)

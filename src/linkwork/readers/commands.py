@@ -14,8 +14,8 @@ from linkwork.core.commands.terminal import (
     wrapped,
 )
 from linkwork.core.textfile.writer import write_text as text_of
-from linkwork.readers.formats import FORMATS
-from linkwork.readers.importing import Imported, imported
+from linkwork.readers.formats import FORMATS, Imported
+from linkwork.readers.importing import imported
 
 
 @click.command("import")

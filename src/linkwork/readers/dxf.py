@@ -31,6 +31,7 @@ def matches(head: str) -> bool:
 
 @dataclass
 class _Entity:
+    source: Source
     kind: str
     line: int
     codes: dict[int, list[str]] = field(default_factory=dict)
@@ -40,6 +41,19 @@ class _Entity:
 
     def one(self, code: int, default: str = "0") -> str:
         return self.all(code)[0] if self.all(code) else default
+
+    @property
+    def place(self) -> str:
+        """Where it is, for notes."""
+        return f"line {self.line}"
+
+    def leave_out(self, what: str) -> None:
+        """Note that it is not carried over."""
+        self.source.leave_out(self.place, what)
+
+    def corner(self, x: str, y: str) -> complex:
+        """A place of two words."""
+        return self.source.point(x, y, f"a coordinate of {self.kind[:20]}", self.line)
 
     @property
     def layer(self) -> str:
@@ -91,17 +105,16 @@ def read(source: Source) -> Assembly:
     driven = []
     for entity, path, closed in _paths(source, entities):
         along = _pins_of(path, closed, pins)
-        place = f"line {entity.line}"
         if entity.kind == "LINE" and (len(along) < 2 or not {path[0], path[-1]} <= along.keys()):
-            source.leave_out(place, "line with an end at no circle")
+            entity.leave_out("line with an end at no circle")
         elif len(along) < 2:
-            source.leave_out(place, "polyline with fewer than two circles at its corners")
+            entity.leave_out("polyline with fewer than two circles at its corners")
         elif entity.layer in _GROUND_LAYERS:
             assembly.fixed.update(along.values())
         else:
             link = assembly.add_link(f"L{len(assembly.links) + 1}", along.values())
             if entity.layer in _INPUT_LAYERS:
-                driven.append((place, link))
+                driven.append((entity.place, link))
     for place, link in driven:
         # without a pivot on ground the drawing does not show the reference of the angle
         pivots = [p for p in assembly.links[link] if p in assembly.fixed]
@@ -136,7 +149,7 @@ def _entities(source: Source) -> tuple[str, list[_Entity]]:
             elif value == "ENDSEC":
                 section = ""
             elif section == "ENTITIES":
-                entities.append(_Entity(value, line))
+                entities.append(_Entity(source, value, line))
         elif code == 2 and wait:
             section, wait = value, False
         elif section == "HEADER" and code == 9:
@@ -150,13 +163,8 @@ def _entities(source: Source) -> tuple[str, list[_Entity]]:
     if len(entities) > _MOST:
         source.refuse(f"has more than {_MOST} entities")
     for entity in (entity for entity in entities if entity.is_on_sheet):
-        source.leave_out(f"line {entity.line}", "entity of the sheet (paper space)")
+        entity.leave_out("entity of the sheet (paper space)")
     return units, [entity for entity in entities if not entity.is_on_sheet]
-
-
-def _place(source: Source, entity: _Entity, x: str, y: str) -> complex:
-    what = f"a coordinate of {entity.kind[:20]}"
-    return complex(source.number(x, what, entity.line), source.number(y, what, entity.line))
 
 
 def _pins(source: Source, entities: list[_Entity]) -> list[_Pin]:
@@ -166,9 +174,9 @@ def _pins(source: Source, entities: list[_Entity]) -> list[_Pin]:
         if entity.kind != "CIRCLE":
             continue
         if entity.is_mirrored:
-            source.leave_out(f"line {entity.line}", "circle seen from behind (extrusion)")
+            entity.leave_out("circle seen from behind (extrusion)")
             continue
-        at = _place(source, entity, entity.one(10, ""), entity.one(20, ""))
+        at = entity.corner(entity.one(10, ""), entity.one(20, ""))
         radius = source.number(entity.one(40, ""), "the radius", entity.line)
         same = next((p for p in pins if abs(p.at - at) <= _TOLERANCE * max(radius, p.radius)), None)
         if same is None:
@@ -188,31 +196,29 @@ def _paths(
     polyline: tuple[_Entity, list[complex]] | None = None
     for entity in entities:
         if entity.kind == "LINE":
-            ends = [
-                _place(source, entity, entity.one(x, ""), entity.one(x + 10, "")) for x in (10, 11)
-            ]
+            ends = [entity.corner(entity.one(x, ""), entity.one(x + 10, "")) for x in (10, 11)]
             yield entity, ends, False
         elif entity.kind in ("LWPOLYLINE", "POLYLINE") and entity.is_mirrored:
-            source.leave_out(f"line {entity.line}", "polyline seen from behind (extrusion)")
+            entity.leave_out("polyline seen from behind (extrusion)")
         elif entity.kind == "LWPOLYLINE":
             if entity.has_arcs:
-                source.leave_out(f"line {entity.line}", _ARCS)
+                entity.leave_out(_ARCS)
             xs, ys = entity.all(10), entity.all(20)
             if len(xs) != len(ys):
                 source.refuse("a corner of the polyline lacks a coordinate", entity.line)
-            corners = [_place(source, entity, x, y) for x, y in zip(xs, ys, strict=True)]
+            corners = [entity.corner(x, y) for x, y in zip(xs, ys, strict=True)]
             yield entity, corners, entity.is_closed
         elif entity.kind == "POLYLINE":
             polyline = (entity, [])
         elif entity.kind == "VERTEX" and polyline is not None:
             if entity.has_arcs:
-                source.leave_out(f"line {entity.line}", _ARCS)
-            polyline[1].append(_place(source, entity, entity.one(10, ""), entity.one(20, "")))
+                entity.leave_out(_ARCS)
+            polyline[1].append(entity.corner(entity.one(10, ""), entity.one(20, "")))
         elif entity.kind == "SEQEND" and polyline is not None:
             yield *polyline, polyline[0].is_closed
             polyline = None
         elif entity.kind != "CIRCLE":
-            source.leave_out(f"line {entity.line}", f"entity {entity.kind[:20]}")
+            entity.leave_out(f"entity {entity.kind[:20]}")
 
 
 def _pins_of(path: list[complex], closed: bool, pins: list[_Pin]) -> dict[complex, str]:
@@ -223,20 +229,13 @@ def _pins_of(path: list[complex], closed: bool, pins: list[_Pin]) -> dict[comple
         nearest = min(pins, key=lambda pin: abs(pin.at - corner), default=None)
         if nearest is not None and abs(nearest.at - corner) <= nearest.radius * (1.0 + _TOLERANCE):
             on_path[corner] = nearest.name
-        if k + 1 < len(path) or closed:
-            end = path[(k + 1) % len(path)]
-            inside = (
-                sorted(
-                    (abs(pin.at - corner), pin.name, pin.at)
-                    for pin in pins
-                    if _is_on(pin, corner, end)
-                )
-                if end != corner and len(path) < 50
-                else []
-            )
-            for _, name, at in inside:
-                if name not in on_path.values():
-                    on_path[at] = name
+        end = path[(k + 1) % len(path)]
+        if end == corner or len(path) >= 50 or (k + 1 == len(path) and not closed):
+            continue
+        inside = [pin for pin in pins if _is_on(pin, corner, end)]
+        for pin in sorted(inside, key=lambda pin: (abs(pin.at - corner), pin.name)):
+            if pin.name not in on_path.values():
+                on_path[pin.at] = pin.name
     return on_path
 
 

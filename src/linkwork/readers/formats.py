@@ -4,10 +4,19 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
+from functools import cached_property
 from pathlib import Path
 from types import ModuleType
 
-from linkwork.core.foundation.errors import InputError, UnknownNameError, choices
+from linkwork.core import textfile
+from linkwork.core.api.mechanism import Mechanism
+from linkwork.core.foundation.errors import (
+    InputError,
+    MechanismError,
+    UnknownNameError,
+    choices,
+    internal,
+)
 from linkwork.core.mechanism.linkage import Linkage
 from linkwork.core.mechanism.part.index import PARTS
 from linkwork.readers import dxf, geogebra, linkage2, mjcf, pmks, pylinkage, pyslvs, urdf
@@ -34,30 +43,88 @@ _CLOSED = {
 }
 
 
+@internal("description")
 @dataclass(frozen=True, kw_only=True)
-class Reading:
-    """A linkage of a file, its format, omitted parts, and names that changed."""
+class Imported:
+    """A mechanism from a file of another program.
 
-    linkage: Linkage
+    Parameters
+    ----------
+    description : Linkage
+        Points, links and parts; :meth:`save` writes them as a mechanism file.
+    format : str
+        The format of the file.
+    left_out : tuple of LeftOut
+        What was not carried over, with its places.
+    renamed : Mapping[str, str]
+        Names that could not be kept, with the new ones.
+
+    Examples
+    --------
+    >>> import linkwork as lw, pathlib, tempfile
+    >>> with tempfile.TemporaryDirectory() as folder:
+    ...     path = pathlib.Path(folder, "bar.json")
+    ...     _ = path.write_text(lw.readers.exported(lw.example("hoeken"), "pylinkage").text)
+    ...     found = lw.readers.imported(path)
+    >>> print(found)
+    pylinkage JSON: 5 points, 4 links, 1 input
+    >>> found.mechanism.check().mobility_count
+    1
+    """
+
+    description: Linkage
     format: str
     left_out: tuple[LeftOut, ...]
     renamed: Mapping[str, str]
 
+    @cached_property
+    def mechanism(self) -> Mechanism:
+        """The mechanism, ready to be solved.
+
+        Raises
+        ------
+        MechanismError
+            If something is missing that the file did not contain, such as an input.
+        """
+        return Mechanism(self.description)
+
+    def missing(self) -> str:
+        """Why the mechanism cannot be solved yet; empty if it can."""
+        try:
+            self.mechanism  # noqa: B018 - made for its errors
+        except MechanismError as error:
+            return "; ".join(problem.message for problem in error.problems)
+        return ""
+
+    def save(self, path: str | Path) -> None:
+        """Write a mechanism file, completely or not at all.
+
+        Raises
+        ------
+        InputError
+            If the file cannot be written.
+        """
+        textfile.save(self.description, path)
+
     @property
     def carried(self) -> dict[str, int]:
-        """The numbers of points, links, parts by their table, and inputs."""
-        return carried(self.linkage)
+        """The numbers of points, links, parts by their table, and inputs, where there are any."""
+        tables = ("points", "links", *PARTS)
+        counts = {table: len(getattr(self.description, table)) for table in tables}
+        present = {what: count for what, count in counts.items() if count}
+        return present | {"inputs": len(self.description.inputs)}
+
+    def __str__(self) -> str:
+        counted = [
+            f"{count} {what.removesuffix('s') if count == 1 else what}"
+            for what, count in self.carried.items()
+        ]
+        lines = [f"{FORMATS[self.format].TITLE}: {', '.join(counted)}"]
+        lines += [f"renamed: {old} is now {new}" for old, new in self.renamed.items()]
+        return "\n".join([*lines, *(f"left out: {each}" for each in self.left_out)])
 
 
-def carried(linkage: Linkage) -> dict[str, int]:
-    """The numbers of points, links, parts by their table, and inputs, where there are any."""
-    tables = ("points", "links", *PARTS)
-    counts = {table: len(getattr(linkage, table)) for table in tables}
-    present = {what: count for what, count in counts.items() if count}
-    return present | {"inputs": len(linkage.inputs)}
-
-
-def read_foreign(data: bytes, name: str, form: str | None = None) -> Reading:
+def read_foreign(data: bytes, name: str, form: str | None = None) -> Imported:
     """Read the file of another program.
 
     Parameters
@@ -79,9 +146,11 @@ def read_foreign(data: bytes, name: str, form: str | None = None) -> Reading:
     chosen = _named(form) if form is not None else _recognized(source)
     assembly = FORMATS[chosen].read(source)
     assembly.name = assembly.name or Path(name).stem[:200]
-    linkage = assembly.finish()
-    return Reading(
-        linkage=linkage, format=chosen, left_out=source.left_out, renamed=assembly.renamed
+    return Imported(
+        description=assembly.finish(),
+        format=chosen,
+        left_out=source.left_out,
+        renamed=assembly.renamed,
     )
 
 

@@ -4,8 +4,6 @@ from __future__ import annotations
 
 import os
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
-from functools import cached_property
 from pathlib import Path
 from typing import Any
 
@@ -13,92 +11,12 @@ from linkwork.core import textfile
 from linkwork.core.api.mechanism import Mechanism
 from linkwork.core.foundation.errors import (
     InputError,
-    MechanismError,
-    internal,
 )
 from linkwork.core.foundation.files import as_path, save_text
 from linkwork.core.foundation.values import as_told
 from linkwork.core.mechanism.linkage import Linkage
-from linkwork.readers.assembly import LARGEST, Exported, LeftOut
-from linkwork.readers.formats import FORMATS, carried, read_foreign, write_foreign
-
-
-@internal("description")
-@dataclass(frozen=True, kw_only=True)
-class Imported:
-    """A mechanism from a file of another program.
-
-    Parameters
-    ----------
-    description : Linkage
-        Points, links and parts; :meth:`save` writes them as a mechanism file.
-    format : str
-        The format of the file.
-    left_out : tuple of LeftOut
-        What was not carried over, with its places.
-    renamed : Mapping[str, str]
-        Names that could not be kept, with the new ones.
-
-    Examples
-    --------
-    >>> import linkwork as lw, pathlib, tempfile
-    >>> with tempfile.TemporaryDirectory() as folder:
-    ...     path = pathlib.Path(folder, "bar.json")
-    ...     _ = path.write_text(lw.readers.exported(lw.example("hoeken"), "pylinkage").text)
-    ...     found = lw.readers.imported(path)
-    >>> print(found)
-    pylinkage JSON: 5 points, 4 links, 1 input
-    >>> found.mechanism.check().mobility_count
-    1
-    """
-
-    description: Linkage
-    format: str
-    left_out: tuple[LeftOut, ...]
-    renamed: Mapping[str, str]
-
-    @cached_property
-    def mechanism(self) -> Mechanism:
-        """The mechanism, ready to be solved.
-
-        Raises
-        ------
-        MechanismError
-            If something is missing that the file did not contain, such as an input.
-        """
-        return Mechanism(self.description)
-
-    def missing(self) -> str:
-        """Why the mechanism cannot be solved yet; empty if it can."""
-        try:
-            self.mechanism  # noqa: B018 - made for its errors
-        except MechanismError as error:
-            return "; ".join(problem.message for problem in error.problems)
-        return ""
-
-    def save(self, path: str | Path) -> None:
-        """Write a mechanism file, completely or not at all.
-
-        Raises
-        ------
-        InputError
-            If the file cannot be written.
-        """
-        textfile.save(self.description, path)
-
-    @property
-    def carried(self) -> dict[str, int]:
-        """The numbers of points, links, parts by their table, and inputs."""
-        return carried(self.description)
-
-    def __str__(self) -> str:
-        counted = [
-            f"{count} {what.removesuffix('s') if count == 1 else what}"
-            for what, count in self.carried.items()
-        ]
-        lines = [f"{FORMATS[self.format].TITLE}: {', '.join(counted)}"]
-        lines += [f"renamed: {old} is now {new}" for old, new in self.renamed.items()]
-        return "\n".join([*lines, *(f"left out: {each}" for each in self.left_out)])
+from linkwork.readers.assembly import LARGEST, Exported
+from linkwork.readers.formats import FORMATS, Imported, read_foreign, write_foreign
 
 
 def imported(source: str | Path, format: str | None = None) -> Imported:
@@ -142,13 +60,7 @@ def imported(source: str | Path, format: str | None = None) -> Imported:
     if format is not None and not isinstance(format, str):
         raise InputError(f"format must be a text, got {as_told(format)}")
     data, name = _bytes_of(text)
-    reading = read_foreign(data, name, format)
-    return Imported(
-        description=reading.linkage,
-        format=reading.format,
-        left_out=reading.left_out,
-        renamed=reading.renamed,
-    )
+    return read_foreign(data, name, format)
 
 
 def _bytes_of(text: str) -> tuple[bytes, str]:

@@ -38,12 +38,12 @@ def read(source: Source) -> Assembly:
 class _Document:
     def __init__(self, source: Source, root: Element) -> None:
         self.source, self.assembly = source, Assembly(source)
-        program = root.one("program") or Element("program", {}, root.line)
+        program = root.one("program") or Element(source, "program", {}, root.line)
         shown = program.get("units", "Millimeters")
-        self.assembly.length = source.chosen(shown, _UNITS, f"line {program.line}")
+        self.assembly.length = source.chosen(shown, _UNITS, program.place)
         self.scale = float(LENGTHS["in"] / LENGTHS[self.assembly.length] / 96)
         if program.get("scalefactor", "1") != "1":
-            source.leave_out(f"line {program.line}", "factor of the lengths that are shown")
+            program.leave_out("factor of the lengths that are shown")
         self.points: dict[str, str] = {}
         self.links: dict[str, str] = {}
         connectors = self._mechanical(root, "connector")
@@ -65,7 +65,7 @@ class _Document:
         layer = element.get("layer", "0")
         number = int(layer) if layer.isascii() and layer.isdigit() and len(layer) < 12 else 0
         if number & _DRAWING_LAYER:
-            self.source.leave_out(f"line {element.line}", f"drawing element <{element.tag}>")
+            element.leave_out(f"drawing element <{element.tag}>")
         return not number & _DRAWING_LAYER
 
     def _mechanical(self, root: Element, tag: str) -> list[Element]:
@@ -73,16 +73,16 @@ class _Document:
 
     def _id(self, element: Element) -> str:
         if not element.get("id"):
-            self.source.refuse(f"<{element.tag}> has no id", element.line)
+            element.refuse(f"<{element.tag}> has no id")
         return element.get("id")
 
     def _length(self, element: Element, key: str, default: str = "") -> float:
-        return self.scale * self.source.number(element.get(key, default), key, element.line)
+        return self.scale * element.number(key, default)
 
     def _add_connector(self, element: Element) -> None:
         key = self._id(element)
         if key in self.points:
-            self.source.refuse(f'two connectors have the id "{key[:40]}"', element.line)
+            element.refuse(f'two connectors have the id "{key[:40]}"')
         x, y = (self._length(element, c) for c in "xy")
         point = self.assembly.add_point(
             element.get("name") or f"P{key}", complex(x, y), element.get("anchor") == "true"
@@ -91,25 +91,25 @@ class _Document:
         if element.get("draw") == "true":
             self.assembly.trace.append(point)
         if element.get("drawcircle"):
-            self.source.leave_out(f"line {element.line}", "drawn circle")
+            element.leave_out("drawn circle")
 
     def _add_link(self, element: Element) -> None:
-        key, place = self._id(element), f"line {element.line}"
+        key = self._id(element)
         if key in self.links:
-            self.source.refuse(f'two links have the id "{key[:40]}"', element.line)
+            element.refuse(f'two links have the id "{key[:40]}"')
         points = []
         for child in element.children:
             if child.tag not in ("connector", "fastenconnector"):
                 continue
             if child.get("id") not in self.points:
-                self.source.refuse(f'unknown connector "{child.get("id")[:40]}"', child.line)
+                child.refuse(f'unknown connector "{child.get("id")[:40]}"')
             points.append(self.points[child.get("id")])
         if element.get("actuator") == "true" and len(points) == 2 and points[0] != points[1]:
             self._add_actuator(element, points)
             return
         self.links[key] = self.assembly.add_link(element.get("name") or f"link{key}", points)
         if element.get("actuator") == "true":
-            self.source.leave_out(place, "actuator with more than two connectors")
+            element.leave_out("actuator with more than two connectors")
 
     def _add_actuator(self, element: Element, points: list[str]) -> None:
         preferred = element.get("name") or f"actuator{element.get('id')}"
@@ -120,14 +120,14 @@ class _Document:
             start = abs(b - a)
             which = Input(cylinder=name, from_=start, to=start + throw, step=throw / 100.0)
             self.assembly.inputs.append(which)
-        self.source.leave_out(f"line {element.line}", "strokes per minute of the actuator")
+        element.leave_out("strokes per minute of the actuator")
 
     def _fasten(self, node: Element) -> None:
         """A gear or connector that is fixed on a link."""
         to = node.get("fastenlink") or (node.get("fasten") if node.tag == "connector" else "")
         other = self.links.get(to)
         if node.get("fastenconnector"):
-            self.source.leave_out(f"line {node.line}", "gear fastened to a connector")
+            node.leave_out("gear fastened to a connector")
         if other is None:
             return
         if node.tag == "connector":
@@ -137,58 +137,47 @@ class _Document:
             if self.assembly.carries(link) & self.assembly.carries(other):
                 self.assembly.parts["welds"].append(Weld(links=(other, link)))
             else:
-                self.source.leave_out(
-                    f"line {node.line}", "fastened link without a common connector"
-                )
+                node.leave_out("fastened link without a common connector")
 
     def _drive_or_slide(self, element: Element) -> None:
-        point, place = self.points[element.get("id")], f"line {element.line}"
+        point = self.points[element.get("id")]
         if element.get("slider") == "true":
-            limits = [self.points.get(each.get("id")) for each in element.all("slidelimit")]
-            if element.get("slideradius") and self.source.number(
-                element.get("slideradius"), "slideradius", element.line
-            ):
-                self.source.leave_out(place, "slide on an arc")
-            elif len(limits) == 2 and limits[0] and limits[1] and limits[0] != limits[1]:
-                self._slide(place, point, (limits[0], limits[1]))
+            known = (self.points.get(each.get("id")) for each in element.all("slidelimit"))
+            limits = list(dict.fromkeys(known))
+            if element.get("slideradius") and element.number("slideradius"):
+                element.leave_out("slide on an arc")
+            elif len(limits) == 2 and limits[0] and limits[1]:
+                self._slide(element, point, (limits[0], limits[1]))
             else:
-                self.source.leave_out(place, "slide without two limits")
+                element.leave_out("slide without two limits")
         if element.get("input") == "true":
             # gears turn with the links to which they are fastened
-            pinned = [
-                n
-                for n in self.assembly.carriers(point)
-                if n == GROUND or len(self.assembly.links[n]) > 1
-            ]
+            carriers = self.assembly.carriers(point)
+            pinned = [n for n in carriers if n == GROUND or len(self.assembly.links[n]) > 1]
             # a gear alone on its pin can be driven too
-            pinned = pinned if len(pinned) == 2 else self.assembly.carriers(point)
-            rpm = element.get("rpm")
-            speed = f"{self.source.number(rpm, 'rpm', element.line)} rpm" if rpm else None
-            drive_joint(self.assembly, place, pinned, speed)
+            pinned = pinned if len(pinned) == 2 else carriers
+            speed = f"{element.number('rpm')} rpm" if element.get("rpm") else None
+            drive_joint(self.assembly, element.place, pinned, speed)
 
-    def _slide(self, place: str, point: str, line: tuple[str, str]) -> None:
-        on = [
-            name
-            for name in self.assembly.carriers(*line)
-            if point not in self.assembly.carries(name)
-        ]
+    def _slide(self, element: Element, point: str, line: tuple[str, str]) -> None:
+        carriers = self.assembly.carriers(*line)
+        on = [name for name in carriers if point not in self.assembly.carries(name)]
         if on:
             self.assembly.add_slot(f"s_{point}", point, on[0], line)
         else:
-            self.source.leave_out(place, "slide whose limits are on no other link")
+            element.leave_out("slide whose limits are on no other link")
 
     def _add_ratio(self, element: Element) -> None:
-        place = f"line {element.line}"
         ends = [(self.links.get(link.get("id")), link) for link in element.all("link")]
         wheels = [name for name, _ in ends if name and self.assembly.links.get(name)]
         if len(ends) != 2 or len(wheels) != 2 or wheels[0] == wheels[1]:
-            self.source.leave_out(place, "ratio without two wheels")
+            element.leave_out("ratio without two wheels")
             return
         sizes = [self._length(link, "size") for _, link in ends]
         centers = [self.assembly.links[wheel][0] for wheel in wheels]
         arms = [name for name in self.assembly.carriers(*centers) if name not in wheels]
         if not arms or min(sizes) <= 0 or centers[0] == centers[1]:
-            self.source.leave_out(place, "ratio of wheels whose centres are on no common link")
+            element.leave_out("ratio of wheels whose centres are on no common link")
             return
         self._join(element, wheels, centers, arms[0], sizes)
 
@@ -199,9 +188,7 @@ class _Document:
         if element.get("type") != "gears":
             self.assembly.add_part("belts", "chain", "belt", **pair, radii=tuple(sizes))
             if element.get("sizeassize") != "true":
-                self.source.leave_out(
-                    f"line {element.line}", "radii of the chain's wheels: the ratio is right"
-                )
+                element.leave_out("radii of the chain's wheels: the ratio is right")
             return
         a, b = (self.assembly.points[center] for center in centers)
         # only the ratio of the sizes is meant, the wheels touch

@@ -8,13 +8,12 @@ from __future__ import annotations
 import math
 import re
 from collections.abc import Iterator
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
 from linkwork.core.foundation.arrays import Array
 from linkwork.core.foundation.names import GROUND
-from linkwork.core.mechanism.inputs import Input
 from linkwork.readers.assembly import Assembly, Source
 from linkwork.readers.robots import (
     Body,
@@ -31,8 +30,7 @@ from linkwork.readers.robots import (
 TITLE, SUFFIXES = "MJCF (MuJoCo)", (".mjcf", ".xml")
 _READ = ("compiler", "default", "worldbody", "equality", "actuator")
 _DRAWN = ("size", "visual", "statistic", "asset")  # of pictures and buffers only
-
-
+_BODY_PARTS = {"inertial": "mass of a body", "geom": "shape of a body"}
 _FORCES = {
     "range": "limits", "damping": "damping", "stiffness": "stiffness", "frictionloss": "friction",
     "armature": "inertia of the rotor",
@@ -63,10 +61,9 @@ class _World:
         settings = {k: v for node in self.root.all("compiler") for k, v in node.attributes.items()}
         self.radians = 1.0 if settings.get("angle") == "radian" else math.pi / 180.0
         if settings.get("coordinate") == "global":
-            self.source.refuse(
+            next(self.root.all("compiler")).refuse(
                 'coordinate="global" is not read, as MuJoCo does not any more: write coordinates '
-                "of the parent body",
-                next(self.root.all("compiler")).line,
+                "of the parent body"
             )
         self.sequence = settings.get("eulerseq", "xyz")
         if not re.fullmatch("[xyzXYZ]{3}", self.sequence):
@@ -76,12 +73,12 @@ class _World:
             self._add_defaults(node, {})
         for node in self.root.children:
             if node.tag == "include":
-                self.source.leave_out(f"line {node.line}", "include: other files are not read")
+                node.leave_out("include: other files are not read")
             elif node.tag not in _READ + _DRAWN:
-                self.source.leave_out(f"line {node.line}", f"section <{node.tag[:20]}>")
+                node.leave_out(f"section <{node.tag[:20]}>")
         worlds = list(self.root.all("worldbody"))
         if not worlds:
-            self.source.refuse("has no <worldbody>", self.root.line)
+            self.root.refuse("has no <worldbody>")
         pose = Pose(np.eye(3), np.zeros(3))
         ground = Body(name=GROUND, parent=GROUND, pose=pose, line=worlds[0].line)
         self.bodies.append(ground)
@@ -99,59 +96,49 @@ class _World:
         for inner in element.all("default"):
             self._add_defaults(inner, defaults)
 
-    def _numbers(self, element: Element, key: str, count: int, default: str) -> list[float]:
-        return self.source.numbers(element.get(key, default), count, key, element.line)
-
     def _turn(self, tag: Element) -> Array:
         if tag.get("quat"):
-            w, x, y, z = self._numbers(tag, "quat", 4, "")
+            w, x, y, z = tag.numbers("quat", 4)
             return quaternion(w, x, y, z)
         if tag.get("axisangle"):
-            *axis, angle = self._numbers(tag, "axisangle", 4, "")
+            *axis, angle = tag.numbers("axisangle", 4)
             return turn_about(axis, angle * self.radians)
         if tag.get("euler"):
             turn = np.eye(3)
-            for letter, angle in zip(
-                self.sequence, self._numbers(tag, "euler", 3, ""), strict=True
-            ):
+            for letter, angle in zip(self.sequence, tag.numbers("euler", 3), strict=True):
                 step = turn_about(np.eye(3)["xyz".index(letter.lower())], angle * self.radians)
                 # small letters turn about moving axes
                 turn = turn @ step if letter.islower() else step @ turn
             return turn
         for key in ("xyaxes", "zaxis"):
             if tag.get(key):
-                self.source.refuse(f"{key} is not read: write quat, euler or axisangle", tag.line)
+                tag.refuse(f"{key} is not read: write quat, euler or axisangle")
         return np.eye(3)
 
     def _fill(self, body: Body, element: Element, inherited: str) -> None:
         """The sites, the joint and the children of a body."""
         inherited = element.get("childclass", inherited)
         for child in element.children:
-            place = f"line {child.line}"
             if child.tag == "site" and child.get("fromto"):
-                self.source.leave_out(place, "site with fromto")
+                child.leave_out("site with fromto")
             elif child.tag == "site":
                 name = child.get("name") or f"{body.name}_site{len(body.sites) + 1}"
-                body.sites[name] = body.pose.place(self._numbers(child, "pos", 3, "0 0 0"))
+                body.sites[name] = body.pose.place(child.numbers("pos", 3, "0 0 0"))
                 self.sites[name] = (body, child)
             elif child.tag in ("joint", "freejoint"):
                 self._add_joint(body, child, inherited)
             elif child.tag == "body":
                 self._add_body(body, child, inherited)
-            elif child.tag == "inertial":
-                self.source.leave_out(place, "mass of a body")
-            elif child.tag == "geom":
-                self.source.leave_out(place, "shape of a body")
             else:
-                self.source.leave_out(place, f"element <{child.tag[:20]}>")
+                child.leave_out(_BODY_PARTS.get(child.tag, f"element <{child.tag[:20]}>"))
 
     def _add_body(self, parent: Body, element: Element, inherited: str) -> None:
         name = element.get("name") or f"body{len(self.bodies)}"
         if any(name == other.name for other in self.bodies):
-            self.source.refuse(f'two bodies are called "{name[:40]}"', element.line)
+            element.refuse(f'two bodies are called "{name[:40]}"')
         if len(self.bodies) > 400:
-            self.source.refuse("has more than 400 bodies", element.line)
-        pose = parent.pose.frame(self._numbers(element, "pos", 3, "0 0 0"), self._turn(element))
+            element.refuse("has more than 400 bodies")
+        pose = parent.pose.frame(element.numbers("pos", 3, "0 0 0"), self._turn(element))
         body = Body(name=name, parent=parent.name, pose=pose, line=element.line)
         self.bodies.append(body)
         self._fill(body, element, inherited)
@@ -162,24 +149,22 @@ class _World:
     def _add_joint(self, body: Body, element: Element, inherited: str) -> None:
         # a class of the joint itself comes before that of its body
         defaults = self.defaults.get(element.get("class", inherited), self.defaults[""])
-        element = Element(element.tag, {**defaults, **element.attributes}, element.line)
+        element = replace(element, attributes={**defaults, **element.attributes})
         name = element.get("name") or f"joint{len(self.joints) + 1}"
         kind = "free" if element.tag == "freejoint" else element.get("type", "hinge")
         if kind not in ("hinge", "slide") or body.name == GROUND:
-            self.source.refuse(f"a joint of type {kind[:20]} is not planar", element.line)
+            element.refuse(f"a joint of type {kind[:20]} is not planar")
         if body.joint is not None:
-            self.source.refuse(
-                f'body "{body.name[:40]}" has two joints: only one is read', element.line
-            )
+            element.refuse(f'body "{body.name[:40]}" has two joints: only one is read')
         if name in self.joints:
-            self.source.refuse(f'two joints are called "{name[:40]}"', element.line)
-        axis = body.pose.turn @ np.array(self._numbers(element, "axis", 3, "0 0 1"))
-        at = body.pose.place(self._numbers(element, "pos", 3, "0 0 0"))
+            element.refuse(f'two joints are called "{name[:40]}"')
+        axis = body.pose.turn @ np.array(element.numbers("axis", 3, "0 0 1"))
+        at = body.pose.place(element.numbers("pos", 3, "0 0 0"))
         body.joint = BodyJoint(name=name, kind=kind, at=at, axis=axis)
         self.joints[name] = body.name
         for key, what in _FORCES.items():
             if element.get(key):
-                self.source.leave_out(f"line {element.line}", f"{what} of a joint")
+                element.leave_out(f"{what} of a joint")
 
     def planar(self) -> Planar:
         """The links, with loops and inputs; closures that no position meets are left out."""
@@ -191,7 +176,7 @@ class _World:
             if not (closing and planar.contradictory()):
                 break
             what = f"<{closing[-1].tag}> that contradicts the lengths of the links"
-            self.source.leave_out(f"line {closing[-1].line}", what)
+            closing[-1].leave_out(what)
             kept.remove(closing[-1])
         planar = self._joined(kept, self.source)
         planar.measure()
@@ -206,7 +191,7 @@ class _World:
             if element.tag == "connect":
                 self._connect(planar, element)
             elif element.tag != "weld":
-                source.leave_out(f"line {element.line}", f"coupling of joints <{element.tag[:20]}>")
+                element.leave_out(f"coupling of joints <{element.tag[:20]}>")
         planar.add_sites()
         return planar
 
@@ -214,7 +199,7 @@ class _World:
         """The active ones; a file may have several sections."""
         for element in (element for each in self.root.all("equality") for element in each.children):
             if element.get("active") == "false":
-                self.source.leave_out(f"line {element.line}", f"inactive <{element.tag[:20]}>")
+                element.leave_out(f"inactive <{element.tag[:20]}>")
             else:
                 yield element
 
@@ -223,16 +208,14 @@ class _World:
         if element.get("site1"):
             (one, _), (two, _) = sites = self._two_sites(element)
             first, second = (
-                Pose(np.eye(3), np.zeros(3)).frame(
-                    self._numbers(e, "pos", 3, "0 0 0"), self._turn(e)
-                )
+                Pose(np.eye(3), np.zeros(3)).frame(e.numbers("pos", 3, "0 0 0"), self._turn(e))
                 for _, e in sites
             )
             turn = one.pose.turn @ first.turn @ second.turn.T
             pose = Pose(turn, one.pose.place(first.at) - turn @ second.at)
         else:
             one, two = self._two_bodies(element)
-            *at, w, x, y, z = self._numbers(element, "relpose", 7, "0 1 0 0 0 0 0")
+            *at, w, x, y, z = element.numbers("relpose", 7, "0 1 0 0 0 0 0")
             # without a quaternion they stay as drawn
             pose = one.pose.frame(at, quaternion(w, x, y, z)) if any((w, x, y, z)) else two.pose
         return Weld(one=one.name, two=two.name, pose=pose, line=element.line)
@@ -240,14 +223,14 @@ class _World:
     def _two_sites(self, element: Element) -> list[tuple[Body, Element]]:
         ends = [self.sites[n] for k in ("site1", "site2") if (n := element.get(k)) in self.sites]
         if len(ends) < 2:
-            self.source.refuse(f"{element.tag} refers to a site that does not exist", element.line)
+            element.refuse(f"{element.tag} refers to a site that does not exist")
         return ends
 
     def _two_bodies(self, element: Element) -> list[Body]:
         known = {body.name: body for body in self.bodies}
         names = element.get("body1"), element.get("body2") or GROUND
         if not set(names) <= set(known):
-            self.source.refuse(f"{element.tag} needs body1 and body2, or two sites", element.line)
+            element.refuse(f"{element.tag} needs body1 and body2, or two sites")
         return [known[name] for name in names]
 
     def _connect(self, planar: Planar, element: Element) -> None:
@@ -259,10 +242,10 @@ class _World:
             ]
         else:
             one, two = self._two_bodies(element)
-            at = one.pose.place(self._numbers(element, "anchor", 3, "0 0 0"))
+            at = one.pose.place(element.numbers("anchor", 3, "0 0 0"))
             ends = [(one.name, at), (two.name, at)]
         if planar.link(ends[0][0]) == planar.link(ends[1][0]):
-            planar.source.leave_out(f"line {element.line}", "connect inside one link")
+            planar.source.leave_out(element.place, "connect inside one link")
         else:
             planar.pin(element.get("name") or f"{ends[0][0]}_{ends[1][0]}", *ends)
 
@@ -271,14 +254,13 @@ class _World:
             body = self.joints.get(element.get("joint"))
             joint = next((b.joint for b in self.bodies if b.name == body), None)
             if body is None or joint is None:
-                self.source.leave_out(f"line {element.line}", "actuator that drives no joint")
+                element.leave_out("actuator that drives no joint")
             elif joint.kind == "slide":
-                self.source.leave_out(f"line {element.line}", "the input: a slide without a range")
+                element.leave_out("the input: a slide without a range")
             else:
                 link, on = planar.link(body), planar.link(planar.bodies[body].parent)
                 # a body welded to the world drives the other side
                 link, on = (on, link) if link == GROUND else (link, on)
-                against = None if on == GROUND else on
-                planar.assembly.inputs.append(Input(link=link, relative_to=against))
+                planar.assembly.drive(link, on)
         if not planar.assembly.inputs:
             self.source.leave_out("the file", "the input: no actuator drives a hinge")

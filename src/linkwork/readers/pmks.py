@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import math
 import re
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 from urllib.parse import unquote
 
@@ -317,14 +317,22 @@ def _allowed_name(name: str) -> str:
 
 TITLE, SUFFIXES = "PMKS or PMKS+ link or text", (".pmks",)
 _APP = "https://app.pmksplus.com/?"
-_ROW = re.compile(r"[^\s,|]+[\s,]+(?:[^\s,|]+[\s,]+)*?(?:R|P|RP|G)[\s,]+[-+.\d]", re.IGNORECASE)
+_LINKS = r"(?P<links>[^\s,|]+(?:[\s,]+[^\s,|]+)*?)[\s,]+(?P<kind>R|P|RP|G)[\s,]+"
+_SIZE = r"[-+.\d][^\s,]*"
+_BEGIN = re.compile(rf"{_LINKS}[-+.\d]", re.IGNORECASE)
+#: Links, type, place, angle and flags; a link may be called R or P, numbers follow the type.
+_ROW = re.compile(
+    rf"{_LINKS}(?P<x>{_SIZE})[\s,]+(?P<y>{_SIZE})(?:[\s,]+(?P<angle>{_SIZE}))?"
+    r"(?:[\s,]+(?P<flags>[^\s,]+))?(?:[\s,]+(?P<rest>[^\s,]+).*)?",
+    re.IGNORECASE,
+)
 _HOSTS = re.compile(r"https?://\S*pmks", re.IGNORECASE)
 
 
 def matches(head: str) -> bool:
     """Whether a text begins like this format."""
     text = head.strip()
-    return bool(_HOSTS.match(text) or _ROW.match(text) or text.startswith("pmks2:"))
+    return bool(_HOSTS.match(text) or _BEGIN.match(text) or text.startswith("pmks2:"))
 
 
 def read(source: Source) -> Assembly:
@@ -352,49 +360,39 @@ def _joint_lines(source: Source, text: str) -> Assembly:
     """Rows of links, type, place, angle and flags."""
     rows: list[JointRow] = []
     for line, row in enumerate(text.splitlines(), 1):
-        words = [word for word in re.split(r"[\s,]+", row.strip()) if word]
-        if not words:
+        row = row.strip(" \t,")
+        if not row:
             continue
-        # a link may be called R or P: numbers follow the type
-        kinds = [k for k, word in enumerate(words) if k and word.upper() in ("R", "P", "RP", "G")]
-        k = next((k for k in kinds if re.match(r"[-+.\d]", "".join(words[k + 1 : k + 2]))), None)
-        if k is None:
+        match = _ROW.fullmatch(row)
+        if match is None:
             source.refuse("is not a joint: links, type (R, P, RP), x and y", line)
-        if len(words) < k + 3:
-            source.refuse("a joint needs x and y", line)
-        x, y = (source.number(word, "a coordinate", line) for word in words[k + 1 : k + 3])
-        rest = words[k + 3 :]
-        turn = (
-            source.number(rest.pop(0), "the angle", line) if rest and _is_number(rest[0]) else 0.0
-        )
-        flags = rest.pop(0) if rest else ""
-        links = tuple(GROUND if name.lower() == GROUND else name for name in words[:k])
-        place = f"line {line}"
-        if rest:
-            source.leave_out(place, f'"{rest[0][:40]}" after the flags')
-        if words[k].upper() == "G":
+        kind, place = match["kind"].upper(), f"line {line}"
+        if match["rest"]:
+            source.leave_out(place, f'"{match["rest"][:40]}" after the flags')
+        at = source.point(match["x"], match["y"], "a coordinate", line)
+        turn = source.number(match["angle"] or "0", "the angle", line)
+        if kind == "G":
             source.leave_out(place, "gear joint")
             continue
-        drives = len(flags) == 4 and flags[3] == "t"
         rows.append(
             JointRow(
                 place=place,
-                kind=words[k].upper(),
-                at=complex(x, y),
-                links=links,
+                kind=kind,
+                at=at,
+                links=tuple(
+                    GROUND if name.lower() == GROUND else name
+                    for name in re.split(r"[\s,]+", match["links"])
+                ),
                 angle=math.radians(turn),
-                input=drives,
+                input=re.fullmatch("...t", match["flags"] or "") is not None,
                 name=f"P{len(rows) + 1}",
             )
         )
     if not any(row.input for row in rows):
         # before flags existed, the driven link was the one of this name
-        driven = next(
-            (k for k, row in enumerate(rows) if {GROUND, "input"} == set(row.links)), None
-        )
-        if driven is not None:
-            driven_row = rows[driven]
-            rows[driven] = JointRow(**{**vars(driven_row), "input": True})
+        driven = [k for k, row in enumerate(rows) if {GROUND, "input"} == set(row.links)]
+        for k in driven[:1]:
+            rows[k] = replace(rows[k], input=True)
     return _pmks_assembled(source, rows)
 
 
@@ -415,7 +413,7 @@ def _first_links(source: Source, fields: dict[str, str]) -> Assembly:
             JointRow(
                 place=place,
                 kind=kind,
-                at=complex(source.number(x, f"x of {place}"), source.number(y, f"y of {place}")),
+                at=source.point(x, y, f"a coordinate of {place}"),
                 links=(*ground, *on),
                 angle=math.radians(source.number(turn, f"angle of {place}")),
                 input=drives == "t",
@@ -441,10 +439,6 @@ def _pmks_assembled(source: Source, rows: list[JointRow]) -> Assembly:
         source.leave_out("the file", "the input: none is marked")
     add_joints(assembly, rows)
     return assembly
-
-
-def _is_number(word: str) -> bool:
-    return re.fullmatch(r"[-+]?[\d.]+(?:[eE][-+]?\d+)?", word) is not None
 
 
 def write(drawn: Drawn) -> str:

@@ -13,7 +13,6 @@ from typing import Any, NoReturn
 
 from linkwork.core.foundation.errors import InputError
 from linkwork.core.foundation.names import GROUND
-from linkwork.core.mechanism.inputs import Input
 from linkwork.readers.assembly import Assembly, Drawn, Source
 
 TITLE, SUFFIXES = "pylinkage JSON", (".json",)
@@ -39,7 +38,7 @@ def read(source: Source) -> Assembly:
     assembly = Assembly(source, name if isinstance(name, str) else "")
     assembly.length = "unit"
     if "links" in data:
-        _Mechanism(assembly, joints, _tables(source, data, "links")).add()
+        _Mechanism(assembly, joints).add(_tables(source, data, "links"))
     else:
         _Parents(assembly, joints).add()
     return assembly
@@ -94,8 +93,7 @@ class _Reading:
         if name in self.points:
             self.refuse("joints", k, f'"{name[:40]}" is the name of two joints')
         place = f"a coordinate of joints[{k}]"
-        at = complex(self.source.number(x, place), self.source.number(y, place))
-        self.points[name] = self.assembly.add_point(name, at, fixed)
+        self.points[name] = self.assembly.add_point(name, self.source.point(x, y, place), fixed)
         return self.points[name]
 
     def size(self, entry: dict[str, Any], key: str, k: int) -> float | None:
@@ -124,7 +122,7 @@ class _Parents(_Reading):
         if parent.get("inline"):
             name = parent.get("name")
             place = f"a coordinate of joints[{k}].{key}"
-            at = complex(*(self.source.number(parent.get(c), place) for c in "xy"))
+            at = self.source.point(parent.get("x"), parent.get("y"), place)
             preferred = name if isinstance(name, str) else f"O{k}"
             # inline joints are written again wherever they are used
             same = self.points.get(preferred)
@@ -154,9 +152,7 @@ class _Parents(_Reading):
         if entry.get("angle") is not None:
             self.source.leave_out(f"joints[{k}]", _STEP)
         carriers = [n for n in self.assembly.carriers(base) if n != link]
-        against = GROUND if GROUND in carriers or not carriers else carriers[0]
-        relative = None if against == GROUND else against
-        self.assembly.inputs.append(Input(link=link, relative_to=relative))
+        self.assembly.drive(link, carriers[0] if carriers else GROUND)  # ground is the first
 
     def revolute(self, entry: dict[str, Any], k: int, point: str) -> None:
         for number in "01":
@@ -166,15 +162,15 @@ class _Parents(_Reading):
     def fixed(self, entry: dict[str, Any], k: int, point: str) -> None:
         a, b = (self.parent(entry, f"joint{number}", k) for number in "01")
         # a place relative to two joints is rigid only on a link with both
-        on = self.assembly.carriers(a, b)
-        if not on:
+        on = self.assembly.carrier(a, b)
+        if on is None:
             self.source.leave_out(
                 f"joints[{k}]", "joint fixed to two joints that are on no common link"
             )
             return
-        self.assembly.put_on(on[0], point)
+        self.assembly.put_on(on, point)
         length, angle = self.size(entry, "distance", k), self.size(entry, "angle", k)
-        if on[0] == GROUND:
+        if on == GROUND:
             return
         if length is not None:
             self.assembly.lengths[f"{a} {point}"] = length
@@ -183,12 +179,12 @@ class _Parents(_Reading):
 
     def slide(self, entry: dict[str, Any], k: int, point: str) -> None:
         base, first, second = (self.parent(entry, f"joint{number}", k) for number in "012")
-        on = self.assembly.carriers(first, second)
-        if not on:
+        on = self.assembly.carrier(first, second)
+        if on is None:
             self.source.leave_out(f"joints[{k}]", "slide on two joints that are on no common link")
             return
         self.bar(base, point, self.size(entry, "revolute_radius", k))
-        self.assembly.add_slot(f"s_{point}", point, on[0], (first, second))
+        self.assembly.add_slot(f"s_{point}", point, on, (first, second))
 
 
 _PARENTS = {
@@ -205,13 +201,7 @@ _PARENTS = {
 class _Mechanism(_Reading):
     """Joints with places, and links with joints."""
 
-    def __init__(
-        self, assembly: Assembly, joints: list[dict[str, Any]], links: list[dict[str, Any]]
-    ) -> None:
-        super().__init__(assembly, joints)
-        self.links = links
-
-    def add(self) -> None:
+    def add(self, links: list[dict[str, Any]]) -> None:
         """Add points, links, the driver, then slides and followers."""
         for k, entry in enumerate(self.joints):
             name, at = self.named(entry, "id", "joints", k), entry.get("position")
@@ -219,7 +209,7 @@ class _Mechanism(_Reading):
                 self.refuse("joints", k, "needs position, a list of two numbers")
             self.add_point(name, k, at[0], at[1], entry.get("type") == "ground")
         # links first: slides and trackers look for links of their joints
-        for k, entry in enumerate(self.links):
+        for k, entry in enumerate(links):
             self._add_link(entry, k)
         for k, entry in enumerate(self.joints):
             kind, point = entry.get("type", "revolute"), self.points[entry["id"]]
@@ -232,10 +222,9 @@ class _Mechanism(_Reading):
 
     def _add_link(self, entry: dict[str, Any], k: int) -> None:
         name, ends = self.named(entry, "id", "links", k), entry.get("joints")
-        known = isinstance(ends, list) and all(
-            isinstance(j, str) and j in self.points for j in ends
-        )
-        if not isinstance(ends, list) or not known:
+        if not isinstance(ends, list) or any(
+            not isinstance(j, str) or j not in self.points for j in ends
+        ):
             self.refuse("links", k, "needs joints, a list of ids of joints")
         points = [self.points[joint] for joint in ends]
         kind = entry.get("type", "link")
@@ -259,36 +248,29 @@ class _Mechanism(_Reading):
             return
         if entry.get("angular_velocity") is not None:
             self.source.leave_out(f"links[{k}]", _STEP)
-        ends: tuple[float | None, float | None] = (None, None)
-        if entry.get("type") == "arc_driver":
-            angles = (self.size(entry, key, k) for key in ("arc_start", "arc_end"))
-            ends = tuple(None if end is None else math.degrees(end) for end in angles)  # type: ignore[assignment]  # two
-        self.assembly.inputs.append(Input(link=link, from_=ends[0], to=ends[1]))
+        ends: dict[str, float] = {}
+        for field, key in (("from_", "arc_start"), ("to", "arc_end")):
+            angle = self.size(entry, key, k) if entry.get("type") == "arc_driver" else None
+            if angle is not None:
+                ends[field] = math.degrees(angle)
+        self.assembly.drive(link, GROUND, **ends)
 
     def _slide(self, entry: dict[str, Any], k: int, point: str) -> None:
         axis = entry.get("axis", [1.0, 0.0])
         if not isinstance(axis, list) or len(axis) != 2:
             self.refuse("joints", k, "needs axis, a list of two numbers")
-        along = complex(*(self.source.number(c, f"the axis of joints[{k}]") for c in axis))
+        along = self.source.point(axis[0], axis[1], f"the axis of joints[{k}]")
         if not along:
             self.refuse("joints", k, "has an axis of length zero")
-        through = entry.get("line_point")
-        if isinstance(through, list) and len(through) == 2:
-            start = complex(*(self.source.number(c, f"line_point of joints[{k}]") for c in through))
-            away = ((self.assembly.points[point] - start) * along.conjugate()).imag
-            if abs(away) > 1e-9 * abs(along) * max(abs(start), abs(self.assembly.points[point])):
-                self.source.leave_out(
-                    f"joints[{k}]", "line_point: the joint is not on that line, but on a parallel"
-                )
         line = self.assembly.guide(GROUND, point, along)
         self.assembly.add_slot(f"s_{point}", point, GROUND, line)
 
     def _follow(self, entry: dict[str, Any], k: int, point: str) -> None:
         refs = [entry.get(f"ref_joint{number}_id") for number in "12"]
         known = [self.points[ref] for ref in refs if isinstance(ref, str) and ref in self.points]
-        on = self.assembly.carriers(*known) if len(known) == 2 else []
-        if on:
-            self.assembly.put_on(on[0], point)
+        on = self.assembly.carrier(*known) if len(known) == 2 else None
+        if on is not None:
+            self.assembly.put_on(on, point)
         else:
             self.source.leave_out(
                 f"joints[{k}]", "tracker of two joints that are on no common link"
@@ -320,18 +302,15 @@ def write(drawn: Drawn) -> str:
     tables = []
     for name, joints_of_link in drawn.linkage.links.items():
         table: dict[str, Any] = {"id": name, "type": "link", "joints": list(joints_of_link)}
-        motor = next(
-            (
-                p
-                for p, w in driven.items()
-                if w.link == name or (w.link is None and p in joints_of_link)
-            ),
-            None,
-        )
+        motors = [
+            point
+            for point, which in driven.items()
+            if which.link == name or (which.link is None and point in joints_of_link)
+        ]
         if name == GROUND:
             table["type"] = GROUND
-        elif motor in drawn.linkage.links[GROUND] and motor is not None:
-            table |= {"type": "driver", "motor_joint": motor}
+        elif motors and motors[0] in drawn.linkage.links[GROUND]:
+            table |= {"type": "driver", "motor_joint": motors[0]}
         tables.append(table)
     data = {"name": drawn.linkage.name, "joints": joints, "links": tables, "ground": GROUND}
     return json.dumps(data, indent=2, ensure_ascii=False) + "\n"

@@ -8,11 +8,13 @@ from __future__ import annotations
 
 import math
 import re
+from dataclasses import dataclass
 
 from linkwork.core.foundation.names import GROUND
 from linkwork.readers.assembly import Assembly, Drawn, JointRow, Source, add_joints
 
 TITLE, SUFFIXES = "Pyslvs expression", (".pyslvs",)
+_DEEPEST = 3  # brackets in brackets
 _TOKEN = re.compile(r"\s*(?:#[^\n]*\n\s*)*([\[\],]|[^\s\[\],#]+)")
 
 
@@ -23,11 +25,26 @@ def matches(head: str) -> bool:
 
 def read(source: Source) -> Assembly:
     """Read an expression; the input is not in it."""
-    rows = _Parser(source).mechanism()
+    parser = _Parser(source)
+    whole = parser.term()
+    if whole.word != "M" or parser.word:
+        source.refuse(
+            f'expected M[…] alone, got "{parser.word[:40] or whole.word[:40]}"', parser.line
+        )
     assembly = Assembly(source)
-    add_joints(assembly, rows)
+    joints = enumerate(whole.parts, start=1)
+    add_joints(assembly, [_joint(parser, count, term) for count, term in joints])
     source.leave_out("the expression", "the input: an expression does not state it")
     return assembly
+
+
+@dataclass(frozen=True)
+class _Term:
+    """A word that ends ``at`` this character, with the terms in brackets behind it."""
+
+    word: str
+    at: int
+    parts: list[_Term]
 
 
 class _Parser:
@@ -38,7 +55,11 @@ class _Parser:
 
     @property
     def line(self) -> int:
-        return self.text.count("\n", 0, self.at) + 1
+        return self.line_of(self.at)
+
+    def line_of(self, at: int) -> int:
+        """The line of a character."""
+        return self.text.count("\n", 0, at) + 1
 
     def _next(self) -> str:
         match = _TOKEN.match(self.text, self.at)
@@ -46,73 +67,52 @@ class _Parser:
         return match[1] if match else ""
 
     def take(self, expected: str = "") -> str:
-        """The next word, which must be ``expected``."""
+        """The next word, or the sign that is expected."""
         word = self.word
-        if (expected and word != expected) or not word:
+        if word != expected if expected else word in ("", *"[],"):
             got = f'"{word[:40]}"' if word else "the end"
             self.source.refuse(f'expected "{expected or "a word"}", got {got}', self.line)
         self.word = self._next()
         return word
 
-    def mechanism(self) -> list[JointRow]:
-        self.take("M")
-        self.take("[")
-        rows: list[JointRow] = []
-        while self.word != "]":
-            rows.append(self.joint(len(rows) + 1))
-            if self.word != "]":
-                self.take(",")
-        self.take("]")
-        if self.word:
-            self.source.refuse(f'"{self.word[:40]}" follows the expression', self.line)
-        return rows
+    def term(self, depth: int = 0) -> _Term:
+        """A word, with or without brackets."""
+        if depth > _DEEPEST:
+            self.source.refuse("a bracket too many", self.line)
+        at, word = self.at, self.take()
+        parts: list[_Term] = []
+        if self.word == "[":
+            self.take("[")
+            while self.word != "]":
+                parts.append(self.term(depth + 1))
+                if self.word != "]":
+                    self.take(",")
+            self.take("]")
+        return _Term(word, at, parts)
 
-    def joint(self, count: int) -> JointRow:
-        line = self.line
-        self.take("J")
-        self.take("[")
-        kind = self.take()
-        if kind not in ("R", "P", "RP"):
-            self.source.refuse(f'joint type "{kind[:40]}" is not R, P or RP', line)
-        fields: dict[str, list[str]] = {}
-        while self.word == ",":
-            self.take(",")
-            name = self.take()
-            if name in fields:
-                self.source.refuse(f'"{name[:40]}" occurs twice', self.line)
-            fields[name] = self.words()
-        self.take("]")
-        at = fields.get("P", [])
-        if len(at) != 2:
-            self.source.refuse("a joint needs its place, P[x, y]", line)
-        x, y = (self.source.number(word, "a coordinate", line) for word in at)
-        angle = self.source.number(fields.get("A", ["0"])[0], "the angle", line)
-        if "color" in fields:
-            self.source.leave_out(f"joint {count}", "colour")
-        for name in fields:
-            if name not in ("P", "A", "L", "color"):
-                self.source.leave_out(f"joint {count}", f'unknown "{name[:40]}"')
-        return JointRow(
-            place=f"joint {count}",
-            kind=kind,
-            at=complex(x, y),
-            links=tuple(fields.get("L", ())),
-            angle=math.radians(angle),
-            name=f"P{count - 1}",
-        )
 
-    def words(self) -> list[str]:
-        """Words between brackets."""
-        self.take("[")
-        words: list[str] = []
-        while self.word != "]":
-            words.append(self.take())
-            if words[-1] == "[":
-                self.source.refuse("a bracket too many", self.line)
-            if self.word != "]":
-                self.take(",")
-        self.take("]")
-        return words or [""]
+def _joint(parser: _Parser, count: int, term: _Term) -> JointRow:
+    source, place, line = parser.source, f"joint {count}", parser.line_of(term.at)
+    kind, *parts = term.parts or [term]
+    if term.word != "J" or kind.word not in ("R", "P", "RP"):
+        source.refuse(f'"{kind.word[:40]}" is not a joint R, P or RP', line)
+    fields = {part.word: [inner.word for inner in part.parts] for part in parts}
+    if len(fields) < len(parts):
+        source.refuse("a joint has a field twice", line)
+    at, angle = fields.get("P", []), fields.get("A", ["0"])
+    if len(at) != 2 or len(angle) != 1:
+        source.refuse("a joint needs its place, P[x, y], and its angle, A[degrees]", line)
+    for name in fields:
+        if name not in ("P", "A", "L"):
+            source.leave_out(place, "colour" if name == "color" else f'unknown "{name[:40]}"')
+    return JointRow(
+        place=place,
+        kind=kind.word,
+        at=source.point(at[0], at[1], "a coordinate", line),
+        links=tuple(fields.get("L", ())),
+        angle=math.radians(source.number(angle[0], "the angle", line)),
+        name=f"P{count - 1}",
+    )
 
 
 def write(drawn: Drawn) -> str:

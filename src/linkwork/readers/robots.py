@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
+import itertools
 import math
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, field, replace
-from itertools import combinations
 from typing import NoReturn
 from xml.parsers import expat
 
@@ -22,16 +22,38 @@ _MOST = 50_000
 
 @dataclass(frozen=True)
 class Element:
-    """An element, its attributes and line; texts between elements are not kept."""
+    """An element of a source, its attributes and line; texts between elements are not kept."""
 
+    source: Source
     tag: str
     attributes: dict[str, str]
     line: int
     children: list[Element] = field(default_factory=list)
 
+    @property
+    def place(self) -> str:
+        """Where it is, for notes."""
+        return f"line {self.line}"
+
+    def leave_out(self, what: str) -> None:
+        """Note that it, or a part of it, is not carried over."""
+        self.source.leave_out(self.place, what)
+
+    def refuse(self, message: str) -> NoReturn:
+        """Refuse the file for it; raises as :meth:`Source.refuse`."""
+        self.source.refuse(message, self.line)
+
     def get(self, name: str, default: str = "") -> str:
         """An attribute."""
         return self.attributes.get(name, default)
+
+    def number(self, name: str, default: str = "") -> float:
+        """An attribute that is a finite number."""
+        return self.source.number(self.get(name, default), name, self.line)
+
+    def numbers(self, name: str, count: int, default: str = "") -> list[float]:
+        """An attribute of so many numbers."""
+        return self.source.numbers(self.get(name, default), count, name, self.line)
 
     def all(self, tag: str) -> Iterator[Element]:
         """The children with a tag."""
@@ -50,12 +72,29 @@ def xml_tree(data: bytes, source: Source, *roots: str) -> Element:
     MechanismFileError
         If it is not well-formed, has a document type or another root, or is too deep or too long.
     """
-    builder = _Builder(source)
-    parser = builder.parser
+    parser = expat.ParserCreate()
+    top = Element(source, "", {}, 1)
+    nested, count = [top], itertools.count(1)
+
+    def refuse(message: str) -> NoReturn:
+        source.refuse(message, parser.CurrentLineNumber)
+
+    def start(tag: str, attributes: dict[str, str]) -> None:
+        # readers descend by recursion
+        if len(nested) > _DEEPEST:
+            refuse(f"has elements nested deeper than {_DEEPEST} levels")
+        if next(count) > _MOST:
+            refuse(f"has more than {_MOST} elements")
+        element = Element(source, tag, attributes, parser.CurrentLineNumber)
+        nested[-1].children.append(element)
+        nested.append(element)
+
     # entities are declared in a document type only: without it none can expand
-    parser.StartDoctypeDeclHandler = builder.no_document_type
-    parser.StartElementHandler = builder.start
-    parser.EndElementHandler = builder.end
+    parser.StartDoctypeDeclHandler = lambda *_: refuse(
+        "has a document type (DOCTYPE): entities are not read, remove it"
+    )
+    parser.StartElementHandler = start
+    parser.EndElementHandler = lambda _: nested.pop()
     try:
         parser.Parse(data, True)
     except expat.ExpatError as error:
@@ -63,40 +102,11 @@ def xml_tree(data: bytes, source: Source, *roots: str) -> Element:
         source.refuse(f"is not XML: {what} (column {error.offset + 1})", error.lineno)
     except (ValueError, LookupError):  # encodings that Python does not have
         source.refuse("is in an encoding that is not read: save it as UTF-8", 1)
-    root = builder.top.children[0]
+    root = top.children[0]
     if root.tag not in roots:
         expected = " or ".join(f"<{tag}>" for tag in roots)
-        source.refuse(f"begins with <{root.tag[:40]}>, expected {expected}", root.line)
+        root.refuse(f"begins with <{root.tag[:40]}>, expected {expected}")
     return root
-
-
-class _Builder:
-    def __init__(self, source: Source) -> None:
-        self.source = source
-        self.parser = expat.ParserCreate()
-        self.top = Element("", {}, 1)
-        self.open = [self.top]
-        self.count = 0
-
-    def _refuse(self, message: str) -> NoReturn:
-        self.source.refuse(message, self.parser.CurrentLineNumber)
-
-    def no_document_type(self, *_: object) -> None:
-        self._refuse("has a document type (DOCTYPE): entities are not read, remove it")
-
-    def start(self, tag: str, attributes: dict[str, str]) -> None:
-        self.count += 1
-        # readers descend by recursion
-        if len(self.open) > _DEEPEST:
-            self._refuse(f"has elements nested deeper than {_DEEPEST} levels")
-        if self.count > _MOST:
-            self._refuse(f"has more than {_MOST} elements")
-        element = Element(tag, attributes, self.parser.CurrentLineNumber)
-        self.open[-1].children.append(element)
-        self.open.append(element)
-
-    def end(self, _: str) -> None:
-        self.open.pop()
 
 
 # ----------------------------------------------------------------------
@@ -353,7 +363,7 @@ class Planar:
         """Whether two links, or ground and a link, share two points at different distances."""
         distances: dict[frozenset[str], float] = {}
         for spots in self.spots.values():
-            for a, b in combinations(spots, 2):
+            for a, b in itertools.combinations(spots, 2):
                 distance = abs(spots[a] - spots[b])
                 known = distances.setdefault(frozenset((a, b)), distance)
                 if abs(known - distance) > _NEAR * self.size:
@@ -372,7 +382,7 @@ class Planar:
             base = spots[rest[0]] - spots[first]
             moved = any(
                 abs(abs(spots[a] - spots[b]) - abs(drawn[a] - drawn[b])) > near
-                for a, b in combinations(spots, 2)
+                for a, b in itertools.combinations(spots, 2)
             )
             if moved:
                 self._follow(link, spots)

@@ -42,14 +42,14 @@ class _Tree:
         self.source = source
         self.links = {element.get("name"): element for element in root.all("link")}
         if len(self.links) < len(list(root.all("link"))) or "" in self.links:
-            source.refuse("two links have the same name, or one has none", root.line)
+            root.refuse("two links have the same name, or one has none")
         self.joints = list(root.all("joint"))
         names = [element.get("name") for element in self.joints]
         if len(set(names)) < len(names):
-            source.refuse("two joints have the same name", root.line)
+            root.refuse("two joints have the same name")
         for element in root.children:
             if element.tag not in ("link", "joint"):
-                source.leave_out(f"line {element.line}", f"element <{element.tag[:20]}>")
+                element.leave_out(f"element <{element.tag[:20]}>")
         self.bodies: list[Body] = []
         self._grow()
         for name in self.links:
@@ -64,9 +64,7 @@ class _Tree:
             ends = [joint.one(tag) for tag in ("parent", "child")]
             parent, child = ("" if end is None else end.get("link") for end in ends)
             if parent not in self.links or child not in self.links or child in carried:
-                self.source.refuse(
-                    "needs a parent and a child that no other joint carries", joint.line
-                )
+                joint.refuse("needs a parent and a child that no other joint carries")
             below.setdefault(parent, []).append(joint)
             carried.add(child)
         # the specification allows one root
@@ -97,11 +95,11 @@ class _Tree:
         if kind in _KINDS:
             axis = node.one("axis")
             # the default of the specification
-            axis_text = "1 0 0" if axis is None else axis.get("xyz", "1 0 0")
-            along = pose.turn @ np.array(self.source.numbers(axis_text, 3, "axis", node.line))
+            local = [1.0, 0.0, 0.0] if axis is None else axis.numbers("xyz", 3, "1 0 0")
+            along = pose.turn @ np.array(local)
             body.joint = BodyJoint(name=node.get("name"), kind=_KINDS[kind], at=pose.at, axis=along)
         elif kind != "fixed":
-            self.source.refuse(f'a joint of type "{kind[:20]}" is not read', node.line)
+            node.refuse(f'a joint of type "{kind[:20]}" is not read')
         else:
             # a rigid child is a point of its parent
             body.sites[name] = pose.at
@@ -112,15 +110,15 @@ class _Tree:
                 place, _ = self._origin(inner)
                 body.sites[f"{name}_center"] = pose.place(place)
             what = "mass of a link" if inner.tag == "inertial" else "shape of a link"
-            self.source.leave_out(f"line {inner.line}", what)
+            inner.leave_out(what)
         return name
 
     def _origin(self, element: Element) -> tuple[list[float], Array]:
         origin = element.one("origin")
         if origin is None:
             return [0.0, 0.0, 0.0], np.eye(3)
-        at = self.source.numbers(origin.get("xyz", "0 0 0"), 3, "xyz", origin.line)
-        angles = self.source.numbers(origin.get("rpy", "0 0 0"), 3, "rpy", origin.line)
+        at = origin.numbers("xyz", 3, "0 0 0")
+        angles = origin.numbers("rpy", 3, "0 0 0")
         turn = np.eye(3)
         for axis, angle in zip(np.eye(3), angles, strict=True):  # about fixed axes
             turn = turn_about(axis, angle) @ turn
@@ -128,47 +126,38 @@ class _Tree:
 
     def drive(self, planar: Planar) -> None:
         """Drive every joint over its limits; mimic joints move in step."""
-        ranges = {row.get("name"): self._range(row) for row in self.joints}
+        bodies = {body.joint.name: body for body in self.bodies if body.joint is not None}
         for row in self.joints:
-            body = next(
-                (b for b in self.bodies if b.joint is not None and b.joint.name == row.get("name")),
-                None,
-            )
+            body = bodies.get(row.get("name"))
             if body is None or body.joint is None:
                 continue
-            low, high = self._moved(row.get("name"), ranges)
-            place = f"line {row.line}"
             if row.one("coupling") is not None:
-                self.source.leave_out(place, "polynomial of a coupling")
-            self._add_input(planar, body, body.joint, low, high)
+                row.leave_out("polynomial of a coupling")
+            self._add_input(planar, body, body.joint, *self._moved(row))
         self.source.leave_out("the file", "loops: a tree has none, every joint is driven")
 
-    def _moved(self, name: str, ranges: dict[str, tuple[float, float]]) -> tuple[float, float]:
+    def _moved(self, joint: Element, depth: int = 0) -> tuple[float, float]:
         """The range of a joint, or the range that follows from its leading joint."""
-        joints = {joint.get("name"): joint for joint in self.joints}
-        lines: list[tuple[float, float]] = []
-        while (mimic := joints[name].one("mimic")) is not None:
-            name = mimic.get("joint")
-            if name not in ranges:
-                self.source.refuse("mimic refers to a joint that does not exist", mimic.line)
-            if len(lines) == len(joints):
-                self.source.refuse("mimic joints follow each other in a circle", mimic.line)
-            factor = self.source.number(mimic.get("multiplier", "1"), "multiplier", mimic.line)
-            lines.append(
-                (factor, self.source.number(mimic.get("offset", "0"), "offset", mimic.line))
-            )
-        low, high = ranges[name]
-        for factor, offset in reversed(lines):
-            # inputs move in step, so that a straight line is exact
-            low, high = factor * low + offset, factor * high + offset
-        return low, high
+        mimic = joint.one("mimic")
+        if mimic is None:
+            return self._range(joint)
+        leading = next((j for j in self.joints if j.get("name") == mimic.get("joint")), None)
+        if leading is None:
+            mimic.refuse("mimic refers to a joint that does not exist")
+        if depth == len(self.joints):
+            mimic.refuse("mimic joints follow each other in a circle")
+        factor = mimic.number("multiplier", "1")
+        offset = mimic.number("offset", "0")
+        # inputs move in step, so that a straight line is exact
+        low, high = self._moved(leading, depth + 1)
+        return factor * low + offset, factor * high + offset
 
     def _range(self, element: Element) -> tuple[float, float]:
         limit = element.one("limit")
         if element.get("type") == "continuous" or limit is None:
             return 0.0, 2.0 * math.pi
-        low = self.source.number(limit.get("lower", "0"), "lower", limit.line)
-        return low, self.source.number(limit.get("upper", "0"), "upper", limit.line)
+        low = limit.number("lower", "0")
+        return low, limit.number("upper", "0")
 
     def _add_input(
         self, planar: Planar, body: Body, joint: BodyJoint, low: float, high: float

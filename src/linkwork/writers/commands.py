@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import Any
 
@@ -47,20 +47,35 @@ from linkwork.core.drawing.picture_file import check_picture, write
 from linkwork.core.drawing.scene import THEMES, theme_named
 from linkwork.core.foundation.errors import InputError, choices
 from linkwork.core.foundation.statuses import ChangePointPolicy
-from linkwork.core.mechanism.dimensions import Number
 from linkwork.core.results.listing.motion_listing import Column
 from linkwork.readers.formats import WRITERS
 from linkwork.readers.importing import exported
-from linkwork.writers.charts.plotting import CIRCUIT_KINDS, PlotKind, circuits_plot, motion_plot
+from linkwork.writers.charts.plotting import (
+    CIRCUIT_KINDS,
+    MOTION_KINDS,
+    circuits_plot,
+    motion_plot,
+)
 from linkwork.writers.code.languages import code_of, language_of
 from linkwork.writers.plates.files import check_plate_file, plates_of
 from linkwork.writers.plates.plate import PlateOptions, PlateStack
 from linkwork.writers.plates.stack import stack_of
 from linkwork.writers.report.findings import template_of
-from linkwork.writers.report.gathering import write_report
-from linkwork.writers.report.report import check_report_file
+from linkwork.writers.report.report import check_report_file, write_report
 from linkwork.writers.robot.files import check_robot_file, robot_of
 from linkwork.writers.writing import kind_of, writers
+
+_Decorator = Callable[[Callable[..., Any]], Callable[..., Any]]
+
+
+def _output_option(about: str) -> _Decorator:
+    return click.option("-o", "--output", metavar="PATH", required=True, help=about)
+
+
+def _common_options(command: Callable[..., Any]) -> Callable[..., Any]:
+    """``--set``, ``--json`` and ``--debug``."""
+    return set_option(json_option(debug_option(command)))
+
 
 # ----------------------------------------------------------------------
 # ``linkwork plot``
@@ -68,17 +83,15 @@ from linkwork.writers.writing import kind_of, writers
 
 @click.command("plot")
 @file_argument
-@click.option(
-    "-o", "--output", metavar="PATH", required=True, help="Picture file: .png, .svg, .pdf or .tikz."
-)
+@_output_option("Picture file: .png, .svg, .pdf or .tikz.")
 @columns_option(
     "Column of the table to plot; a point for path and hodograph; a pin for transmission. "
     "Default: unknowns and outputs, traced points, all pins."
 )
 @click.option(
     "--kind",
-    type=click.Choice([kind.value for kind in PlotKind]),
-    default=PlotKind.CURVES.value,
+    type=click.Choice([*MOTION_KINDS, *CIRCUIT_KINDS]),
+    default="curves",
     show_default=True,
     help="Kind of plot.",
 )
@@ -91,9 +104,7 @@ from linkwork.writers.writing import kind_of, writers
 @configuration_option
 @through_option
 @change_points_option
-@set_option
-@json_option
-@debug_option
+@_common_options
 @click.pass_context
 def plot_command(
     context: click.Context,
@@ -130,7 +141,7 @@ def plot_command(
     check_outputs(file, output)
     mechanism = read_mechanism(file, changes)
     colours = theme_named(theme, THEMES)
-    if kind in [which.value for which in CIRCUIT_KINDS]:
+    if kind in CIRCUIT_KINDS:
         circuits = _circuits(mechanism, kind, {"against": against, "wrapped": wrapped, **sweeping})
         with progress("drawing"):
             write(circuits_plot(circuits, names, kind=kind), output, theme=colours)
@@ -166,36 +177,17 @@ def _circuits(mechanism: Mechanism, kind: str, options: dict[str, Any]) -> Circu
 
 
 # ----------------------------------------------------------------------
-# ``linkwork animate``
-
-
-# ----------------------------------------------------------------------
 # ``linkwork export program``
 
 
 @click.command("program")
 @file_argument
-@click.option(
-    "-o",
-    "--output",
-    metavar="PATH",
-    required=True,
-    help="Program file: .py (NumPy), .m (Octave, MATLAB), .c (C99), .js or .st (IEC 61131-3).",
-)
+@_output_option("Program file: .py (NumPy), .m (Octave, MATLAB), .c (C99), .js, .st (IEC 61131-3).")
 @range_options
 @configuration_option
-@set_option
-@json_option
-@debug_option
+@_common_options
 def program_command(
-    file: str,
-    output: str,
-    from_: Number | None,
-    to: Number | None,
-    step: Number | None,
-    configuration: str | None,
-    changes: tuple[str, ...],
-    as_json: bool,
+    file: str, output: str, changes: tuple[str, ...], as_json: bool, **sweeping: Any
 ) -> None:
     """Write the solver as a program in another language.
 
@@ -213,9 +205,7 @@ def program_command(
     check_outputs(file, output)
     mechanism = read_mechanism(file, changes)
     with progress("sweeping") as tell:
-        motion = mechanism.sweep(
-            from_=from_, to=to, step=step, configuration=configuration, progress=tell
-        )
+        motion = mechanism.sweep(progress=tell, **sweeping)
     with progress("writing the program"):
         text = code_of(mechanism.model, motion, path)
     write_text(output, [text])
@@ -228,9 +218,7 @@ def program_command(
 
 @click.command("report")
 @file_argument
-@click.option(
-    "-o", "--output", metavar="PATH", required=True, help="Report: .html, .pdf, .docx or .md."
-)
+@_output_option("Report: .html, .pdf, .docx or .md.")
 @click.option(
     "--template",
     metavar="NAME",
@@ -244,9 +232,7 @@ def program_command(
 @click.option("--date", metavar="TEXT", help="The date as it is printed; none by default.")
 @at_option
 @configuration_option
-@set_option
-@json_option
-@debug_option
+@_common_options
 def report_command(
     file: str,
     output: str,
@@ -307,7 +293,7 @@ _SIZES = (
 )
 
 
-def _size_options(command: Any) -> Any:
+def _size_options(command: Callable[..., Any]) -> Callable[..., Any]:
     for name, about in reversed(_SIZES):
         command = click.option(f"--{name}", type=float, metavar="LENGTH", help=about)(command)
     return command
@@ -315,35 +301,23 @@ def _size_options(command: Any) -> Any:
 
 @click.command("plates")
 @file_argument
-@click.option(
-    "-o",
-    "--output",
-    metavar="PATH",
-    required=True,
-    help="File of plates: .dxf, .svg, .stl, .3mf or .step.",
-)
+@_output_option("File of plates: .dxf, .svg, .stl, .3mf or .step.")
 @_size_options
 @click.option("--labels", is_flag=True, help="Write every plate's name on it, to be engraved.")
 @click.option("--layout", is_flag=True, help="Put the plates side by side on a sheet.")
 @click.option("--bill", metavar="PATH", help="Write the bill of materials as CSV.")
 @range_options
 @configuration_option
-@set_option
-@json_option
-@debug_option
+@_common_options
 def plates_command(
     file: str,
     output: str,
     labels: bool,
     layout: bool,
     bill: str | None,
-    from_: Number | None,
-    to: Number | None,
-    step: Number | None,
-    configuration: str | None,
     changes: tuple[str, ...],
     as_json: bool,
-    **sizes: float | None,
+    **given: Any,
 ) -> None:
     """Write the links as plates to cut or print.
 
@@ -361,13 +335,12 @@ def plates_command(
     path = Path(output)
     check_plate_file(path)
     check_outputs(file, output, bill, as_json=as_json)
+    sizes = {name: given.pop(name) for name, _ in _SIZES}
     chosen = {name: size for name, size in sizes.items() if size is not None}
     options = PlateOptions(labels=labels, **chosen)
     mechanism = read_mechanism(file, changes)
     with progress("sweeping") as tell:
-        motion = mechanism.sweep(
-            from_=from_, to=to, step=step, configuration=configuration, progress=tell
-        )
+        motion = mechanism.sweep(progress=tell, **given)
     with progress("choosing layers") as tell:
         stack = stack_of(mechanism.model, motion, options, tell)
     with progress("writing the plates"):
@@ -422,14 +395,10 @@ def _cell(value: float) -> str:
 
 @click.command("robot")
 @file_argument
-@click.option(
-    "-o", "--output", metavar="PATH", required=True, help="Robot file: .mjcf, .urdf or .sdf."
-)
+@_output_option("Robot file: .mjcf, .urdf or .sdf.")
 @at_option
 @configuration_option
-@set_option
-@json_option
-@debug_option
+@_common_options
 def robot_command(
     file: str,
     output: str,
@@ -473,9 +442,7 @@ def _text_command(form: str) -> click.Command:
     )
     @at_option
     @configuration_option
-    @set_option
-    @json_option
-    @debug_option
+    @_common_options
     def command(
         file: str,
         output: str | None,
@@ -521,10 +488,8 @@ def _usual_command(kind: str) -> click.Command:
 
     @click.command(kind, help=f"Write a {kind}.")
     @file_argument
-    @click.option("-o", "--output", metavar="PATH", required=True, help="The file.")
-    @set_option
-    @json_option
-    @debug_option
+    @_output_option("The file.")
+    @_common_options
     def command(file: str, output: str, changes: tuple[str, ...], as_json: bool) -> None:
         is_book = output.lower().endswith(".xlsx")
         check_outputs(file, None if is_book else output, workbook=output if is_book else None)

@@ -220,7 +220,7 @@ def read_visitor_file(request: OpenFile) -> VisitorFile:
         opened = FileOpened(source=name, format="", carried={}, renamed={}, left_out=())
     else:
         reading = read_foreign(data, name)
-        text = write_text(reading.linkage)
+        text = write_text(reading.description)
         opened = FileOpened(
             source=name,
             format=str(FORMATS[reading.format].TITLE),

@@ -427,16 +427,9 @@ class Motion:
         MissingPackageError
             If Matplotlib is not installed.
         """
-        return wings.use("writers.charts.plotting").plot_motion(
-            self,
-            *names,
-            kind=kind,
-            against=against,
-            wrapped=wrapped,
-            ax=ax,
-            theme=theme,
-            title=title,
-        )
+        plotting = wings.use("writers.charts.plotting")
+        chart = plotting.motion_plot(self, names, kind=kind, against=against, wrapped=wrapped)
+        return plotting.plot(chart, ax, theme, title)
 
     def animate(
         self,

@@ -228,8 +228,7 @@ def _time(motion: Motion) -> Column:
     lead = lead_of(motion)
     if motion.speed is None:
         raise InputError(
-            f"a plot over time needs the speed of {lead}: set it in [input], as in "
-            f'speed = "{_speed_of(motion)}", or plot against {lead}'
+            f"a plot over time needs the speed of {lead}: set it in [input], or plot against {lead}"
         )
     if len(set(motion.branch) - {""}) > 1:
         raise InputError(
@@ -241,9 +240,3 @@ def _time(motion: Motion) -> Column:
     unit = motion.units.angle.radians if angle else 1.0
     passed = (values - values[0]) * unit / motion.speed
     return Column(name=TIME, label=TIME, unit="s", measure=TIME, values=passed)
-
-
-def _speed_of(motion: Motion) -> str:
-    """An example of a speed for this input."""
-    unit = motion.input_units[lead_of(motion)]
-    return "60 rpm" if unit == motion.units.angle.value else f"50 {unit}/s" if unit else "50"

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from functools import partial
 from itertools import chain, pairwise
 
@@ -73,13 +73,12 @@ def motion_chart(
         If a column does not exist.
     """
     check_positions(motion)
-    across = abscissa_of(motion, against)
+    graph = _Graph(motion, abscissa_of(motion, against), alone=not against, wrapped=wrapped)
     columns = columns_of(motion, names or [*usual_columns(motion), *motion.outputs])
-    draw = partial(draw_graph, motion, across, wrapped=wrapped, alone=not against)
     return Chart(
         title=motion.mechanism,
         caption=reached_caption(motion),
-        panels=shared_panels(columns, draw),
+        panels=shared_panels(columns, graph.draw),
     )
 
 
@@ -157,34 +156,78 @@ def _label(group: Sequence[Column]) -> str:
     return label
 
 
-def draw_graph(
-    motion: Motion,
-    across: Column,
-    group: Sequence[Column],
-    tone: int,
-    axes: ChartAxes,
-    *,
-    alone: bool,
-    **options: bool,
-) -> None:
-    """Columns over an abscissa; ``alone``: it is the input, shown over its requested range.
+@dataclass(frozen=True, eq=False)
+class _Graph:
+    """Columns of a motion over an abscissa.
 
-    ``options`` are those of :func:`draw_columns`.
+    Parameters
+    ----------
+    alone : bool
+        The abscissa is the input, shown over its requested range.
+    wrapped : bool
+        Reduce angles to one turn.
+    legend : bool
+        Name a single curve in the legend too.
     """
-    first, unit = group[0], motion.units.angle
-    lines = draw_columns(motion, across, group, tone, axes, **options)
-    set_scale(axes, "x", across.scale)
-    set_scale(axes, "y", first.scale)
-    axes.labels(with_unit(across.label, across.unit), _label(group))
-    low, high = np.nanmin(across.values), np.nanmax(across.values)
-    if (alone or across.measure == TIME) and low < high:
-        axes.show_input(low, high)
-    ends = _ends(motion, group, lines)
-    if ends is not None:
-        axes.ax.set_ylim(*ends)
-    for axis, column in ((axes.ax.xaxis, across), (axes.ax.yaxis, first)):
-        if column.turn:
-            round_ticks(axis, unit)
+
+    motion: Motion
+    across: Column
+    alone: bool = False
+    wrapped: bool = False
+    legend: bool = False
+
+    def draw(self, group: Sequence[Column], tone: int, axes: ChartAxes) -> None:
+        """A panel of columns, from colour ``tone`` on."""
+        across, first, unit = self.across, group[0], self.motion.units.angle
+        lines = self.draw_columns(group, tone, axes)
+        set_scale(axes, "x", across.scale)
+        set_scale(axes, "y", first.scale)
+        axes.labels(with_unit(across.label, across.unit), _label(group))
+        low, high = np.nanmin(across.values), np.nanmax(across.values)
+        if (self.alone or across.measure == TIME) and low < high:
+            axes.show_input(low, high)
+        ends = _ends(self.motion, group, lines)
+        if ends is not None:
+            axes.ax.set_ylim(*ends)
+        for axis, column in ((axes.ax.xaxis, across), (axes.ax.yaxis, first)):
+            if column.turn:
+                round_ticks(axis, unit)
+
+    def draw_columns(
+        self, group: Sequence[Column], tone: int, axes: ChartAxes, factor: float = 1.0
+    ) -> list[tuple[Array, Array]]:
+        """The curves with their limits; returns the lines. ``factor``: unit of the abscissa."""
+        motion, across = self.motion, self.across
+        lead = motion.inputs[lead_of(motion)]
+        lines: list[tuple[Array, Array]] = []
+        for column in group:
+            where = breaks(motion, lead, across, column)
+            lines.append((broken(across.values, where) * factor, broken(column.values, where)))
+        window = Window.around([y for _, y in lines], group[0].turn if self.wrapped else 0.0)
+        polar = axes.ax.name == "polar"
+        smooth = not polar and across.scale == group[0].scale == "linear"
+        below = covering(lines, range(len(lines))) if len(lines) > 1 else [0]
+        for k, (column, line) in enumerate(zip(group, lines, strict=True)):
+            axes.curve(
+                *repeated(*line, Window(), window),
+                column.label,
+                tone + k,
+                legend=self.legend or len(group) > 1,
+                below=below[k],
+                dots=across.dots or column.dots,
+                smooth=smooth,
+            )
+            for kind, rows in limits_on(motion, column).items():
+                x, valued = across.values * factor, np.isfinite(column.values)
+                if (rows & valued).any():
+                    places = repeated(x, column.values, Window(), window, rows & valued)
+                    axes.marks(*places, kind, tone + k)
+                if kind in SINGULAR and not polar:
+                    for at in x[rows & ~valued & np.isfinite(x)].tolist():
+                        axes.limit_rule(at, kind)
+        if window.whole:
+            axes.ax.set_ylim(*window.ends)
+        return lines
 
 
 def _ends(
@@ -199,62 +242,6 @@ def _ends(
     if level is None and singular and any(column.rate for column in group):
         return bounded_ends(lines)
     return level
-
-
-def draw_columns(
-    motion: Motion,
-    across: Column,
-    group: Sequence[Column],
-    tone: int,
-    axes: ChartAxes,
-    *,
-    wrapped: bool = False,
-    legend: bool = False,
-    factor: float = 1.0,
-) -> list[tuple[Array, Array]]:
-    """The curves of columns with their limits; returns the lines.
-
-    Parameters
-    ----------
-    tone : int
-        Colour of the first one.
-    wrapped : bool
-        Reduce angles to one turn.
-    legend : bool
-        Name a single curve in the legend too.
-    factor : float
-        Unit of the abscissa on the axes.
-    """
-    lead = motion.inputs[lead_of(motion)]
-    lines: list[tuple[Array, Array]] = []
-    for column in group:
-        where = breaks(motion, lead, across, column)
-        lines.append((broken(across.values, where) * factor, broken(column.values, where)))
-    window = Window.around([y for _, y in lines], group[0].turn if wrapped else 0.0)
-    polar = axes.ax.name == "polar"
-    smooth = not polar and across.scale == group[0].scale == "linear"
-    below = covering(lines, range(len(lines))) if len(lines) > 1 else [0]
-    for k, (column, line) in enumerate(zip(group, lines, strict=True)):
-        axes.curve(
-            *repeated(*line, Window(), window),
-            column.label,
-            tone + k,
-            legend=legend or len(group) > 1,
-            below=below[k],
-            dots=across.dots or column.dots,
-            smooth=smooth,
-        )
-        for kind, rows in limits_on(motion, column).items():
-            x, valued = across.values * factor, np.isfinite(column.values)
-            if (rows & valued).any():
-                places = repeated(x, column.values, Window(), window, rows & valued)
-                axes.marks(*places, kind, tone + k)
-            if kind in SINGULAR and not polar:
-                for at in x[rows & ~valued & np.isfinite(x)].tolist():
-                    axes.limit_rule(at, kind)
-    if window.whole:
-        axes.ax.set_ylim(*window.ends)
-    return lines
 
 
 # ----------------------------------------------------------------------
@@ -288,7 +275,7 @@ def polar_chart(motion: Motion, names: Sequence[str] = (), *, against: str = "")
     if not across.turn:
         raise InputError(
             f'a polar plot needs an angle, and "{across.name}" is not one: name an angle with '
-            f"against= (--against){_an_angle(motion)}"
+            "against= (--against)"
         )
     columns = columns_of(motion, names or _usual(motion))
     panels = shared_panels(columns, partial(_draw_polar, motion, across), ratio=1.0)
@@ -309,18 +296,13 @@ def _usual(motion: Motion) -> list[str]:
     return lengths or rates or list(usual_columns(motion))
 
 
-def _an_angle(motion: Motion) -> str:
-    """An existing angle, for the end of a message."""
-    angles = [n for n, series in motion.unknowns.items() if series.quantity.kind is Kind.ANGLE]
-    return f', as in "{angles[0]}"' if angles else ""
-
-
 def _draw_polar(
     motion: Motion, across: Column, group: Sequence[Column], tone: int, axes: ChartAxes
 ) -> None:
     """Radii start at zero, or below it if some are negative: then a circle marks zero."""
     ax, unit = axes.ax, motion.units.angle
-    lines = draw_columns(motion, across, group, tone, axes, factor=math.tau / across.turn)
+    graph = _Graph(motion, across)
+    lines = graph.draw_columns(group, tone, axes, factor=math.tau / across.turn)
     set_scale(axes, "y", group[0].scale)
     axes.labels("", "", _label(group))
     values = np.concatenate([y for _, y in lines])
@@ -375,26 +357,18 @@ def transmission_chart(motion: Motion, names: Sequence[str] = (), *, against: st
             'add it to [outputs], as in mu = "rocker - coupler", and name it'
         )
     columns = [_column(motion, pins, name) for name in names or pins]
-    draw = partial(_draw_transmission, motion, abscissa_of(motion, against), alone=not against)
+    graph = _Graph(motion, abscissa_of(motion, against), alone=not against, legend=True)
     return Chart(
         title=motion.mechanism,
         caption=reached_caption(motion),
-        panels=shared_panels(columns, draw),
+        panels=shared_panels(columns, partial(_draw_transmission, graph)),
     )
 
 
-def _draw_transmission(
-    motion: Motion,
-    across: Column,
-    group: Sequence[Column],
-    tone: int,
-    axes: ChartAxes,
-    *,
-    alone: bool,
-) -> None:
+def _draw_transmission(graph: _Graph, group: Sequence[Column], tone: int, axes: ChartAxes) -> None:
     """From 0 to half a turn, with the recommended band and ticks at its ends."""
-    unit = motion.units.angle
-    draw_graph(motion, across, group, tone, axes, alone=alone, legend=True)
+    unit = graph.motion.units.angle
+    graph.draw(group, tone, axes)
     low, high = (bound / unit.radians for bound in RECOMMENDED)
     named = f"{low:.0f}° to {high:.0f}°" if unit is AngleUnit.DEGREE else "2π/9 to 7π/9 rad"
     axes.band(low, high, f"recommended: {named}")

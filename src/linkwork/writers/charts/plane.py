@@ -245,12 +245,11 @@ def _stations(motion: Motion) -> Iterator[tuple[int, str]]:
     step = tick_step(span, _STATIONS, motion.units.angle if across.turn else None)
     on = [k for k in np.flatnonzero(rows) if _multiple(float(values[k]), step)]
     for k in sorted(on, key=lambda k: not _multiple(float(values[k]), 2 * step)):
-        yield int(k), printed_value(_cleaned(float(values[k]), step), across.unit, motion.units)
+        yield (
+            int(k),
+            printed_value(round(float(values[k]) / step) * step, across.unit, motion.units),
+        )
 
 
 def _multiple(value: float, step: float) -> bool:
     return bool(abs(value / step - round(value / step)) < 1e-6)
-
-
-def _cleaned(value: float, step: float) -> float:
-    return round(value / step) * step

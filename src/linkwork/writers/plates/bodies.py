@@ -72,12 +72,9 @@ class BodyPoses:
             poses[body] = (places[:, self._origin[body]], np.cos(turn) + 1j * np.sin(turn))
         return poses
 
+    @np.errstate(all="ignore")  # bounds of boxes without a proof are infinite
     def spread(self, boxes: Boxes) -> dict[str, tuple[Array, Array]]:
         """How far every body's origin moves [mm] and turns [rad] at most in boxes, (B,) each."""
-        with np.errstate(all="ignore"):  # bounds of boxes without a proof are infinite
-            return self._spread(boxes)
-
-    def _spread(self, boxes: Boxes) -> dict[str, tuple[Array, Array]]:
         points = self.millimetres * motions_of_points(self.model, boxes).moved
         nothing = np.zeros(len(boxes))
         spreads = {GROUND: (nothing, nothing)}

@@ -29,8 +29,17 @@ from linkwork.writers.plates.bodies import (
     variables_of_all,
 )
 from linkwork.writers.plates.gears import GearMesh, Wheel, gear_meshes
-from linkwork.writers.plates.outlines import Outline, arms_between, circle, rounded, shapely
-from linkwork.writers.plates.plate import BASE, Opening, Pin, Plate, PlateOptions, Sizes, sizes_of
+from linkwork.writers.plates.outlines import arms_between, circle, rounded, shapely, shapes_of
+from linkwork.writers.plates.plate import (
+    BASE,
+    Opening,
+    Pin,
+    Plate,
+    PlateOptions,
+    Sizes,
+    round_holes,
+    sizes_of,
+)
 from linkwork.writers.plates.wheels import (
     Blank,
     RackMesh,
@@ -105,11 +114,11 @@ class Construction:
         made = cls(linkage, mm, sizes, bodies, ways, travel, holes)
         turns = {link: phase(turn) for link, (_, turn) in poses.items()}
         points = {point: complex(motion.place(point).v[solved][0]) for point in linkage.points}
-        wheels, meshes = gear_meshes(linkage, model.skeleton, sizes, mm, turns, points)
+        meshes = gear_meshes(linkage, model.skeleton, sizes, mm, turns, points)
+        wheels = list(dict.fromkeys(wheel for _, *pair in meshes for wheel in pair))
         racks = list(rack_meshes(linkage, wheels, sizes, mm))
-        single = [mesh.pinion for mesh in racks if mesh.pinion not in wheels]
-        names = made._gears([*wheels, *single], meshes, turns)
-        made._racks(racks, dict(zip([*wheels, *single], names, strict=True)), poses, now)
+        names = made._gears([*wheels, *(mesh.pinion for mesh in racks)], meshes, turns)
+        made._racks(racks, names, poses, now)
         made._cams(model.skeleton, turns)
         made._main_plates()
         for plate in made.plates:
@@ -119,20 +128,21 @@ class Construction:
 
     def _gears(
         self, wheels: Sequence[Wheel], meshes: Sequence[GearMesh], turns: Mapping[str, float]
-    ) -> list[str]:
+    ) -> dict[Wheel, str]:
         """Add the gears; returns the names of their plates."""
-        names = []
-        for wheel in wheels:
+        names: dict[Wheel, str] = {}
+        for wheel in dict.fromkeys(wheels):
             body = self.bodies[wheel.disc.link]
             turned = replace(wheel, phase=wheel.phase + turns[wheel.disc.link] - turns[body.name])
-            if wheel.disc.ring:
-                names.append(self._add(ring_plate(turned, body, self.sizes)))
-            else:
-                names.append(self._add(self._wheel(gear_blank(turned, body), body)))
-        for mesh in meshes:
-            one, other = (wheels[k] for k in mesh.wheels)
-            self.meshes.append(frozenset(names[k] for k in mesh.wheels))
-            self.notes.append(f"{mesh.name}: {one.teeth} and {other.teeth} teeth, {_gearing(one)}")
+            plate = (
+                ring_plate(turned, body, self.sizes)
+                if wheel.disc.ring
+                else self._wheel(gear_blank(turned, body), body)
+            )
+            names[wheel] = self._add(plate)
+        for name, one, other in meshes:
+            self.meshes.append(frozenset((names[one], names[other])))
+            self.notes.append(f"{name}: {one.teeth} and {other.teeth} teeth, {_gearing(one)}")
         return names
 
     def _racks(
@@ -169,12 +179,11 @@ class Construction:
                     f'the roller of "{roller.name}" is too small for its hole of '
                     f"{self.sizes.hole:g} mm: choose smaller pins"
                 )
-            hole = Opening(name=roller.center, outline=circle(center, self.sizes.hole / 2.0))
             plate = Plate(
                 name=name,
                 body=carrier.name,
                 outline=circle(center, radius),
-                openings=(hole,),
+                openings=round_holes({roller.center: center}, self.sizes),
                 core=(np.array([center]),),
                 radius=radius,
             )
@@ -201,7 +210,11 @@ class Construction:
     def _main_plates(self) -> None:
         """The other plates of all bodies, the base plate first."""
         whole = {plate.name for plate in self.plates}
-        main = [self._main_plate(name) for name, _ in _distinct(self.bodies) if name not in whole]
+        main = [
+            self._plate(name, name, self.holes[name], slotted=True)
+            for name, _ in _distinct(self.bodies)
+            if name not in whole
+        ]
         self.plates = main + self.plates
 
     def _join(self) -> None:
@@ -239,35 +252,30 @@ class Construction:
         holes, place = self.holes[body], self.bodies[body].places[point]
         return next((p for p, z in holes.items() if same_place(z, place)), point)
 
-    def _main_plate(self, name: str) -> Plate:
-        """The plate around the holes and slots of a body."""
-        return self._plate(name, name, self.holes[name], slotted=True)
-
     def ground_plate(self, name: str, holes: Mapping[str, complex]) -> Plate:
         """A plate of the ground with some of its holes; slots are in the base plate."""
         return self._plate(name, GROUND, holes, slotted=name == BASE)
 
     def _plate(self, name: str, body: str, holes: Mapping[str, complex], *, slotted: bool) -> Plate:
-        sizes, core, openings, slots = self.sizes, [], [], []
-        for point, place in (dict(holes) | (self.more.get(body, {}) if slotted else {})).items():
-            core.append(place)
-            openings.append(Opening(name=point, outline=circle(place, sizes.hole / 2.0)))
-        for way in self.ways if slotted else ():
-            if way.runner == body and way.reach:
-                for k, place in enumerate(way.places, start=1):
-                    core.append(place)
-                    hole = circle(place, sizes.hole / 2.0)
-                    openings.append(Opening(name=f"{way.name} {k}", outline=hole))
-            if way.on == body:
-                ends = self.slot_ends(way)
-                slots.append((len(core), len(core) + 1))
-                core += ends
-                openings.append(Opening(name=way.name, outline=rounded(ends, sizes.hole / 2.0)))
+        sizes, slots, guided = self.sizes, {}, dict(holes)
+        if slotted:
+            guided |= self.more.get(body, {})
+            for way in self.ways:
+                if way.runner == body and way.reach:
+                    guided |= {f"{way.name} {k}": z for k, z in enumerate(way.places, start=1)}
+                if way.on == body:
+                    slots[way.name] = self.slot_ends(way)
+        core = [*guided.values(), *itertools.chain.from_iterable(slots.values())]
+        openings = [
+            *round_holes(guided, sizes),
+            *(Opening(name=k, outline=rounded(z, sizes.hole / 2.0)) for k, z in slots.items()),
+        ]
         if not core:
             raise InputError(f'nothing is joined to "{body}": it has no plate')
         hull, radius = convex_outline(core), sizes.width / 2.0
+        ends = [(k, k + 1) for k in range(len(guided), len(core), 2)]
         with_arms = len(hull) > 2 and body != GROUND
-        arms = arms_between(core, slots, radius, sizes.fillet) if with_arms else None
+        arms = arms_between(core, ends, radius, sizes.fillet) if with_arms else None
         filled = np.array(hull if hull[0] != hull[-1] else hull[:1])
         return Plate(
             name=name,
@@ -300,7 +308,7 @@ def check_webs(plate: Plate, sizes: Sizes) -> None:
     InputError
         With both openings and the distance.
     """
-    shapes = [_polygon(opening.outline) for opening in plate.openings]
+    shapes = [shapes_of(opening.outline.polygon()) for opening in plate.openings]
     for (a, one), (b, other) in itertools.combinations(enumerate(shapes), 2):
         web = shapely().distance(one, other)
         if web < sizes.web:
@@ -310,11 +318,6 @@ def check_webs(plate: Plate, sizes: Sizes) -> None:
                 f'the openings {names} of plate "{plate.name}" {what}, at least {sizes.web:.3g} mm '
                 "are needed: choose smaller pins, or other dimensions"
             )
-
-
-def _polygon(outline: Outline) -> object:
-    z = outline.polygon()
-    return shapely().polygons(np.stack([z.real, z.imag], axis=-1))
 
 
 def _distinct(bodies: dict[str, RigidBody]) -> Iterator[tuple[str, RigidBody]]:

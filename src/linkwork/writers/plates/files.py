@@ -10,7 +10,7 @@ import struct
 import tempfile
 import zipfile
 from collections.abc import Callable, Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 from xml.sax.saxutils import escape, quoteattr
@@ -105,20 +105,16 @@ def in_rows(stack: PlateStack) -> list[PlacedPlate]:
             f"a sheet of {width:g} mm is too narrow: the widest plate needs {widest:.4g} mm"
         )
     order = sorted(range(len(lying)), key=lambda k: (-sizes[k].imag, k))
-    places: dict[int, complex] = {}
     corner, row = complex(apart, apart), 0.0
     for k in order:
         if corner.real > apart and corner.real + sizes[k].real + apart > width:
             corner, row = complex(apart, corner.imag + row + apart), 0.0
-        places[k] = corner
+        shift = corner - box(lying[k].curves[:1])[0]
+        curves = tuple(curve.moved(shift, 1.0 + 0j) for curve in lying[k].curves)
+        lying[k] = replace(lying[k], curves=curves)
         corner += sizes[k].real + apart
         row = max(row, sizes[k].imag)
-    placed = []
-    for k, item in enumerate(lying):
-        shift = places[k] - box(item.curves[:1])[0]
-        curves = tuple(curve.moved(shift, 1.0 + 0j) for curve in item.curves)
-        placed.append(PlacedPlate(plate=item.plate, curves=curves, layer=item.layer, level=0.0))
-    return placed
+    return lying
 
 
 def _lying(stack: PlateStack) -> Iterator[PlacedPlate]:
@@ -178,9 +174,8 @@ def _write(document: Any, space: Any, item: PlacedPlate, colour: int) -> None:
             center, radius = disc
             space.add_circle((center.real, center.imag), radius, dxfattribs={"layer": layer})
             continue
-        corners = zip(curve.corners, curve.bulges, strict=True)
         space.add_lwpolyline(
-            [(float(z.real), float(z.imag), float(bulge)) for z, bulge in corners],
+            [(float(z.real), float(z.imag), float(bulge)) for z, _, bulge in curve.sides],
             format="xyb",
             close=True,
             dxfattribs={"layer": layer},
@@ -237,7 +232,7 @@ def _path(curve: Outline) -> str:
     """A closed path of lines and arcs."""
     start = curve.corners[0]
     parts = [f"M{_number(start.real)} {_number(-start.imag)}"]
-    for begin, end, bulge in zip(curve.corners, curve.ends, curve.bulges, strict=True):
+    for begin, end, bulge in curve.sides:
         to = f"{_number(end.real)} {_number(-end.imag)}"
         if bulge == 0.0:
             parts.append(f"L{to}")
@@ -420,9 +415,8 @@ def _wire(cad: Any, curve: Outline) -> Any:
         plane = cad.Plane((center.real, center.imag, 0))
         return cad.Wire([cad.Edge.make_circle(radius, plane)])
     edges = []
-    for begin, end, bulge in zip(
-        curve.corners.tolist(), curve.ends.tolist(), curve.bulges.tolist(), strict=True
-    ):
+    for start, finish, bulge in curve.sides:
+        begin, end = complex(start), complex(finish)
         ends = [(z.real, z.imag, 0) for z in (begin, end)]
         if bulge == 0.0:
             edges.append(cad.Edge.make_line(*ends))

@@ -3,21 +3,20 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction
-from typing import Any
 
 import numpy as np
 
 from linkwork.core.drawing.wheels import ADDENDUM, DEDENDUM, mesh_phases
-from linkwork.core.foundation.arrays import Array, ComplexArray
+from linkwork.core.foundation.arrays import Array
 from linkwork.core.foundation.errors import InputError
 from linkwork.core.mechanism.bodies import DiscFigure, Mesh
 from linkwork.core.mechanism.linkage import Linkage
 from linkwork.core.mechanism.part.gears import ToothedPart
 from linkwork.core.mechanism.skeleton import Skeleton
-from linkwork.writers.plates.outlines import Outline, shapely
+from linkwork.writers.plates.outlines import Outline, shapely, shapes_of
 from linkwork.writers.plates.plate import Sizes
 
 #: Teeth of gears given by radii, at least: no undercut at 20 degrees.
@@ -26,8 +25,7 @@ _LARGEST_RATIO = 1000  # of whole numbers that stand for a ratio of radii
 _WHOLE = 1e-9  # of a ratio
 _FLANK = 16  # points along a flank
 _IN_GAP = 1e-6  # of a pitch
-#: Positions within one pitch, at most.
-STEPS = 4096
+_STEPS = 4096  # positions within one pitch, at most
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -41,6 +39,16 @@ class Wheel:
     phase: float
     pressure: float
     backlash: float
+
+    @classmethod
+    def of(
+        cls, disc: DiscFigure, millimetres: float, pressure: float, sizes: Sizes, phase: float = 0.0
+    ) -> Wheel:
+        """A disc with teeth, of the length unit of the file in millimetres."""
+        assert disc.teeth is not None
+        module = 2.0 * millimetres * disc.radius / disc.teeth
+        backlash = sizes.backlash_of(module)
+        return cls(disc=disc, module=module, phase=phase, pressure=pressure, backlash=backlash)
 
     @property
     def teeth(self) -> int:
@@ -56,12 +64,8 @@ class Wheel:
         return pitch - down * self.module, pitch + up * self.module
 
 
-@dataclass(frozen=True, kw_only=True)
-class GearMesh:
-    """Two wheels in mesh, by their numbers in a list of wheels."""
-
-    name: str
-    wheels: tuple[int, int]
+#: The name of a mesh and its two wheels.
+GearMesh = tuple[str, Wheel, Wheel]
 
 
 def gear_meshes(
@@ -71,8 +75,8 @@ def gear_meshes(
     millimetres: float,
     angles: Mapping[str, float],
     points: Mapping[str, complex],
-) -> tuple[list[Wheel], list[GearMesh]]:
-    """The gears of a mechanism and their meshes.
+) -> list[GearMesh]:
+    """The meshes of the gears of a mechanism.
 
     Parameters
     ----------
@@ -88,7 +92,7 @@ def gear_meshes(
     """
     figures = skeleton.of(Mesh)
     if not figures:
-        return [], []
+        return []
     toothed = dict(_with_teeth([mesh.discs for mesh in figures], sizes, millimetres))
     pairs = [(toothed[a], toothed[b]) for a, b in (mesh.discs for mesh in figures)]
     phases = mesh_phases(pairs, angles.__getitem__, points)
@@ -98,26 +102,12 @@ def gear_meshes(
     wheels: dict[DiscFigure, Wheel] = {}
     for mesh, pair in zip(figures, pairs, strict=True):
         for disc in pair:
-            assert disc.teeth is not None
-            module = 2.0 * millimetres * disc.radius / disc.teeth
-            wheels.setdefault(
-                disc,
-                Wheel(
-                    disc=disc,
-                    module=module,
-                    phase=phases[disc] - angles[disc.link],
-                    pressure=steep[mesh.name],
-                    backlash=sizes.backlash_of(module),
-                ),
-            )
-    number = {disc: k for k, disc in enumerate(wheels)}
-    meshes = [
-        GearMesh(name=mesh.name, wheels=(number[a], number[b]))
-        for mesh, (a, b) in zip(figures, pairs, strict=True)
-    ]
+            phase = phases[disc] - angles[disc.link]
+            wheel = Wheel.of(disc, millimetres, steep[mesh.name], sizes, phase)
+            wheels.setdefault(disc, wheel)
     for mesh, pair in zip(figures, pairs, strict=True):
         _check_mesh(mesh, pair, phases, wheels, points, millimetres)
-    return list(wheels.values()), meshes
+    return [(mesh.name, wheels[a], wheels[b]) for mesh, (a, b) in zip(figures, pairs, strict=True)]
 
 
 def _check_mesh(
@@ -140,10 +130,15 @@ def _check_mesh(
         )
     apart = millimetres * abs(points[other.center] - points[one.center])
     if touches(wheels[one], wheels[other], apart):
-        raise InputError(
-            f'the teeth of "{mesh.name}" touch where they should not, with '
-            f"{one.teeth} and {other.teeth} teeth: give more teeth, or more backlash"
-        )
+        raise touching_teeth(mesh.name, f"{one.teeth} and {other.teeth} teeth")
+
+
+def touching_teeth(name: str, teeth: str) -> InputError:
+    """Teeth of a mesh touch."""
+    return InputError(
+        f'the teeth of "{name}" touch where they should not, with {teeth}: give more teeth, or '
+        "more backlash"
+    )
 
 
 def _with_teeth(
@@ -242,36 +237,49 @@ def touches(first: Wheel, second: Wheel, apart: float) -> bool:
     Notes
     -----
     Both are rotated about fixed centres, in so small steps that no point moves more than the least
-    distance so far; if that takes too many, they count as touching.
+    distance so far.
     """
     if second.disc.ring:
         first, second = second, first
     inside = first.disc.ring
     pair = [replace(wheel, phase=phase) for wheel, phase in _in_mesh(first, second)]
     shapes = [involute_outline(wheel, 0j).polygon() for wheel in pair]
-    reach = sum(wheel.radii[1] / wheel.teeth for wheel in pair)
-    count = 64
-    while count <= STEPS:
-        turn = math.tau * np.arange(count) / count
-        ways = (1.0, 1.0 if inside else -1.0)
-        placed = [
-            polygons(place + np.exp(1j * way * turn / wheel.teeth)[:, None] * shape)
+    ways = (1.0, 1.0 if inside else -1.0)
+
+    def distance(pitches: Array) -> float:
+        one, other = (
+            shapes_of(place + np.exp(1j * way * math.tau * pitches / wheel.teeth)[:, None] * shape)
             for place, way, wheel, shape in zip((0j, apart), ways, pair, shapes, strict=True)
-        ]
-        if inside:
-            held = shapely().contains(placed[0], placed[1]).all()
-            distance = shapely().distance(shapely().boundary(placed[0]), placed[1]).min()
-            if not held:
-                return True
-        else:
-            distance = shapely().distance(placed[0], placed[1]).min()
-        if distance <= 0.0:
+        )
+        if not inside:
+            return float(shapely().distance(one, other).min())
+        if not shapely().contains(one, other).all():
+            return 0.0
+        return float(shapely().distance(shapely().boundary(one), other).min())
+
+    return touch_within_a_pitch(
+        distance, math.pi * sum(wheel.radii[1] / wheel.teeth for wheel in pair)
+    )
+
+
+def touch_within_a_pitch(distance: Callable[[Array], float], reach: float) -> bool:
+    """Whether two parts touch somewhere in a pitch; if that takes too many steps, they count so.
+
+    Parameters
+    ----------
+    distance : callable
+        The least distance at some fractions of a pitch.
+    reach : float
+        How far points of both move at most, together, in half a pitch.
+    """
+    count = 64
+    while count <= _STEPS:
+        least = distance(np.arange(count) / count)
+        if least <= 0.0:
             return True
-        # half a step either way
-        moved = math.pi * reach / count
-        if moved < distance:
+        if reach / count < least:
             return False
-        count = math.ceil(1.1 * math.pi * reach / distance)
+        count = math.ceil(1.1 * reach / least)
     return True
 
 
@@ -283,8 +291,3 @@ def _in_mesh(first: Wheel, second: Wheel) -> Iterable[tuple[Wheel, float]]:
     )
     phases = mesh_phases([pair], lambda _: 0.0, {"1": 0j, "2": 1.0 + 0j})
     return zip((first, second), (phases[disc] for disc in pair), strict=True)
-
-
-def polygons(z: ComplexArray) -> Any:
-    """Polygons of shapely with corners (B, n)."""
-    return shapely().polygons(np.stack([z.real, z.imag], axis=-1))

@@ -45,6 +45,15 @@ def _loaded(package: str, extra: str) -> Any:
         return import_module(package)
 
 
+def shapes_of(z: ComplexArray) -> Any:
+    """Points, lines or polygons of shapely with corners (B, n)."""
+    coordinates = np.stack([z.real, z.imag], axis=-1)
+    if z.shape[-1] == 1:
+        return shapely().points(coordinates[..., 0, :])
+    make = shapely().linestrings if z.shape[-1] == 2 else shapely().polygons
+    return make(coordinates)
+
+
 # ----------------------------------------------------------------------
 # Closed outlines of straight lines and circular arcs.
 
@@ -68,6 +77,11 @@ class Outline:
     def ends(self) -> ComplexArray:
         """The corner at which each side ends."""
         return np.roll(self.corners, -1)
+
+    @property
+    def sides(self) -> Iterator[tuple[complex, complex, float]]:
+        """Start, end and bulge of every side."""
+        return zip(self.corners, self.ends, self.bulges, strict=True)
 
     @property
     def area(self) -> float:
@@ -109,7 +123,7 @@ class Outline:
     def polygon(self) -> ComplexArray:
         """Corners of the inscribed polygon, without the repeated first one."""
         parts = []
-        for start, end, bulge in zip(self.corners, self.ends, self.bulges, strict=True):
+        for start, end, bulge in self.sides:
             angle = 4.0 * math.atan(bulge)
             count = max(1, math.ceil(abs(angle) / _ARC)) if abs(bulge) > _FLAT else 1
             if count == 1:
@@ -198,8 +212,7 @@ def arms_between(
     both ends of an arm do not meet: then the outline does not cross itself.
     """
     arms, out = _tree(places, slots), radius + fillet
-    lines = [shapely().LineString([(z.real, z.imag) for z in map(places.__getitem__, arm)])
-             for arm in arms]  # fmt: skip
+    lines = [shapes_of(np.array([places[a], places[b]])) for a, b in arms]
     for (one, first), (other, second) in itertools.combinations(zip(arms, lines, strict=True), 2):
         if not set(one) & set(other) and shapely().distance(first, second) < 2.0 * out:
             return None

@@ -16,7 +16,7 @@ from linkwork.core.foundation.errors import InputError, internal
 from linkwork.core.foundation.names import GROUND
 from linkwork.core.foundation.values import finite_number
 from linkwork.core.results.tables import Table
-from linkwork.writers.plates.outlines import Outline
+from linkwork.writers.plates.outlines import Outline, circle
 
 _STEPS = (1.0, 1.2, 1.5, 2.0, 2.5, 3.0, 4.0, 5.0, 6.0, 8.0)
 _WIDTH, _PIN, _THICKNESS, _GAP = 0.12, 0.4, 0.25, 0.05  # of the longest link; of the width
@@ -85,20 +85,15 @@ class PlateOptions:
 
 
 @dataclass(frozen=True, kw_only=True)
-class Sizes:
+class Sizes(PlateOptions):
     """All sizes in millimetres; ``web`` is the least material between two openings."""
 
     width: float
     fillet: float
     pin: float
     clearance: float
-    kerf: float
     thickness: float
     gap: float
-    module: float | None
-    backlash: float | None
-    sheet: float | None
-    labels: bool
 
     @property
     def hole(self) -> float:
@@ -147,25 +142,20 @@ def sizes_of(options: PlateOptions, millimetres: float, longest: float, nearest:
         If a hole is wider than its bar, or the cut than a hole or an inner corner.
     """
     stated = {
-        field.name: None if getattr(options, field.name) is None
-        else millimetres * getattr(options, field.name)
-        for field in fields(options) if field.name != "labels"
-    }  # fmt: skip
+        name: value if value is None or name == "labels" else millimetres * value
+        for name, value in vars(options).items()
+    }
     width = stated["width"] or _preferred(min(_WIDTH * longest, nearest))
     pin = stated["pin"] or _preferred(_PIN * width)
-    sizes = Sizes(
-        width=width,
-        fillet=stated["fillet"] or width,
-        pin=pin,
-        clearance=_CLEARANCE * pin if stated["clearance"] is None else stated["clearance"],
-        kerf=stated["kerf"] or 0.0,
-        thickness=stated["thickness"] or _preferred(_THICKNESS * width),
-        gap=_GAP * width if stated["gap"] is None else stated["gap"],
-        module=stated["module"],
-        backlash=stated["backlash"],
-        sheet=stated["sheet"],
-        labels=options.labels,
-    )
+    usual = {
+        "width": width,
+        "fillet": width,
+        "pin": pin,
+        "clearance": _CLEARANCE * pin,
+        "thickness": _preferred(_THICKNESS * width),
+        "gap": _GAP * width,
+    }
+    sizes = Sizes(**stated | {k: size for k, size in usual.items() if stated[k] is None})
     if sizes.wall <= 0.0:
         raise InputError(
             f"holes of {sizes.hole:g} mm do not fit into bars of {width:g} mm: "
@@ -208,6 +198,14 @@ class Opening:
 
     name: str
     outline: Outline
+
+
+def round_holes(places: Mapping[str, complex], sizes: Sizes) -> tuple[Opening, ...]:
+    """Holes for pins at places by their names."""
+    return tuple(
+        Opening(name=name, outline=circle(place, sizes.hole / 2.0))
+        for name, place in places.items()
+    )
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)

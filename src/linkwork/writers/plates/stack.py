@@ -22,7 +22,7 @@ from linkwork.core.motion.model import Model
 from linkwork.core.results.motion import Motion
 from linkwork.writers.plates.bodies import BodyPoses, variables_of_all
 from linkwork.writers.plates.construction import Construction, check_webs
-from linkwork.writers.plates.outlines import shapely
+from linkwork.writers.plates.outlines import shapely, shapes_of
 from linkwork.writers.plates.plate import BASE, BRIDGE, Pin, Plate, PlateOptions, PlateStack
 
 _MOST = 200_000  # assignments tried for one number of layers
@@ -120,30 +120,18 @@ class _Search:
             placed, last = {0, self.top}, self.count - 1
             self.layer[self.top] = last
         self.free = range(1, last)
-        self.apart: list[set[int]] = [set() for _ in range(self.plates)]
-        self.blocked: list[set[int]] = [set() for _ in self.pins]  # plates in the way of a pin
-        self.crossed: list[set[int]] = [set() for _ in self.pins]  # pins in the way of a pin
-        for a, b in self.conflicts:
-            if a >= 0 and b >= 0:
-                self.apart[a].add(b)
-                self.apart[b].add(a)
-            elif a < 0 and b < 0:
-                self.crossed[-1 - a].add(-1 - b)
-                self.crossed[-1 - b].add(-1 - a)
-            else:
-                self.blocked[-1 - min(a, b)].add(max(a, b))
-        self.on: list[list[int]] = [
-            [p for p, held in enumerate(self.pins) if k in held] for k in range(self.plates)
-        ]
-        self.near: list[list[int]] = [
-            [p for p, held in enumerate(self.blocked) if k in held] for k in range(self.plates)
+        #: The conflicts of every plate, and those of the pins through it too.
+        named = [[c for c in self.conflicts if k in c] for k in range(self.plates)]
+        self.concerned = [
+            [c for c in self.conflicts if any(k in _plates_of(part, self.pins) for part in c)]
+            for k in range(self.plates)
         ]
         # plates next to those placed already, the most constrained first
         self.order = []
         while len(placed) < self.plates:
             joined = {k for held in self.pins if held & placed for k in held} - placed
             rest = joined or set(range(self.plates)) - placed
-            chosen = max(rest, key=lambda k: (len(self.apart[k]) + len(self.near[k]), -k))
+            chosen = max(rest, key=lambda k: (len(named[k]), -k))
             self.order.append(chosen)
             placed.add(chosen)
 
@@ -163,32 +151,29 @@ class _Search:
         return False
 
     def _fits(self, plate: int) -> bool:
-        layer = self.layer[plate]
-        if any(self.layer[k] == layer for k in self.apart[plate]):
-            return False
         for group in self.together:
-            if plate in group and any(self.layer[k] not in (layer, -1) for k in group):
+            if plate in group and any(self.layer[k] not in (self.layer[plate], -1) for k in group):
                 return False
-        for pin in self.near[plate]:
-            low, high = self._span(pin)
-            if low < layer < high:
-                return False
-        for pin in self.on[plate]:
-            low, high = self._span(pin)
-            if high - low < 2:
-                continue
-            if any(low < self.layer[k] < high for k in self.blocked[pin]):
-                return False
-            for other in self.crossed[pin]:
-                below, above = self._span(other)
-                if max(low, below) + 1 < min(high, above):
-                    return False
-        return True
+        return not any(meet(c, self.layer, self.pins) for c in self.concerned[plate])
 
-    def _span(self, pin: int) -> tuple[int, int]:
-        """The layers between which a pin runs so far."""
-        layers = [self.layer[k] for k in self.pins[pin] if self.layer[k] >= 0]
-        return (min(layers), max(layers)) if layers else (0, 0)
+
+def _plates_of(part: int, pins: Sequence[frozenset[int]]) -> frozenset[int]:
+    """A plate itself, or the plates of a pin."""
+    return frozenset((part,)) if part >= 0 else pins[-1 - part]
+
+
+def meet(conflict: Conflict, layers: Sequence[int], pins: Sequence[frozenset[int]]) -> bool:
+    """Whether two parts share a layer; plates without one have the layer -1."""
+    (low, high), (below, above) = (_occupied(part, layers, pins) for part in conflict)
+    return max(low, below) <= min(high, above)
+
+
+def _occupied(part: int, layers: Sequence[int], pins: Sequence[frozenset[int]]) -> tuple[int, int]:
+    """The first and the last layer of a part; a pin has those between its outer plates."""
+    if part >= 0:
+        return layers[part], layers[part]
+    held = [layers[k] for k in pins[-1 - part] if layers[k] >= 0]
+    return (min(held) + 1, max(held) - 1) if held else (1, 0)
 
 
 # ----------------------------------------------------------------------
@@ -233,14 +218,16 @@ class Collisions:
     @cached_property
     def joined(self) -> list[frozenset[int]]:
         """The numbers of the plates of every pin."""
-        number = {plate.name: k for k, plate in enumerate(self.plates)}
-        return [frozenset(number[name] for name in pin.plates) for pin in self.pins]
+        return self._numbers(pin.plates for pin in self.pins)
 
     @cached_property
     def together(self) -> list[frozenset[int]]:
         """The numbers of plates in contact, which share a layer."""
+        return self._numbers(self.meshes)
+
+    def _numbers(self, groups: Iterable[frozenset[str]]) -> list[frozenset[int]]:
         number = {plate.name: k for k, plate in enumerate(self.plates)}
-        return [frozenset(number[name] for name in mesh) for mesh in self.meshes]
+        return [frozenset(number[name] for name in names) for names in groups]
 
     def pairs(self) -> Iterator[Conflict]:
         """All pairs of parts that may collide: plates, pins and plates without their hole, pins.
@@ -324,20 +311,7 @@ class Collisions:
 
     def meeting(self, layers: Sequence[int]) -> list[Conflict]:
         """The pairs that share a layer."""
-        spans = [
-            sorted(layers[k] for k, plate in enumerate(self.plates) if plate.name in pin.plates)
-            for pin in self.pins
-        ]
-
-        def meet(a: int, b: int) -> bool:
-            if a >= 0:
-                return layers[a] == layers[b]
-            low, high = spans[-1 - a][0], spans[-1 - a][-1]
-            if b >= 0:
-                return low < layers[b] < high
-            return max(low, spans[-1 - b][0]) + 1 < min(high, spans[-1 - b][-1])
-
-        return [(a, b) for a, b in self.pairs() if meet(a, b)]
+        return [pair for pair in self.pairs() if meet(pair, layers, self.joined)]
 
     def moves(self, spread: Mapping[str, tuple[Array, Array]], part: int) -> Array:
         """How far any point of a part moves at most in boxes [mm], (B,)."""
@@ -347,19 +321,10 @@ class Collisions:
 
 def _geometries(origin: ComplexArray, turn: ComplexArray, core: Sequence[ComplexArray]) -> Any:
     """A core in positions (B,): a geometry, or a collection of those of its pieces."""
-    pieces = [_convex(origin[:, None] + turn[:, None] * piece) for piece in core]
+    pieces = [shapes_of(origin[:, None] + turn[:, None] * piece) for piece in core]
     if len(pieces) == 1:
         return pieces[0]
     return shapely().geometrycollections(np.stack(pieces, axis=-1))
-
-
-def _convex(z: ComplexArray) -> Any:
-    """Points, lines or polygons with corners (B, n)."""
-    coordinates = np.stack([z.real, z.imag], axis=-1)
-    if z.shape[1] == 1:
-        return shapely().points(coordinates[:, 0])
-    make = shapely().linestrings if z.shape[1] == 2 else shapely().polygons
-    return make(coordinates)
 
 
 def prove_clear(
@@ -412,23 +377,16 @@ def columns_around(
     made: Construction, poses: dict[str, tuple[ComplexArray, ComplexArray]]
 ) -> tuple[complex, ...]:
     """Places of columns at the corners of the box in which all moving plates stay [mm]."""
-    places = [
-        (
-            poses[plate.body][0][:, None]
-            + poses[plate.body][1][:, None] * np.concatenate(plate.core),
-            plate.radius,
-        )
-        for plate in made.plates
-        if plate.body != GROUND
-    ]
-    ends = [
-        [f(z.real) + s * r for z, r in places] + [f(z.imag) + s * r for z, r in places]
-        for f, s in ((np.min, -1.0), (np.max, 1.0))
-    ]
-    count, room = len(places), made.sizes.spacer / 2.0 + 2.0 * made.sizes.gap
-    x = min(ends[0][:count]) - room, max(ends[1][:count]) + room
-    y = min(ends[0][count:]) - room, max(ends[1][count:]) + room
-    return tuple(complex(a, b) for a, b in itertools.product(x, y))
+    lows, highs = [], []
+    for plate in made.plates:
+        if plate.body != GROUND:
+            origin, turn = poses[plate.body]
+            z = origin[:, None] + turn[:, None] * np.concatenate(plate.core)
+            lows.append((z.real.min() - plate.radius, z.imag.min() - plate.radius))
+            highs.append((z.real.max() + plate.radius, z.imag.max() + plate.radius))
+    room = made.sizes.spacer / 2.0 + 2.0 * made.sizes.gap
+    low, high = np.min(lows, axis=0) - room, np.max(highs, axis=0) + room
+    return tuple(complex(x, y) for x, y in itertools.product(*zip(low, high, strict=True)))
 
 
 def bridged(
@@ -635,9 +593,10 @@ def _in_slots(model: Model, made: Construction, millimetres: float) -> Callable[
 
 def _intervals(model: Model, lead: int, proof: Proved) -> tuple[str, ...]:
     """Intervals of the leading input without a proof, joined, in file units."""
-    variable = (model.untimed or model).equations.inputs[lead]
-    scale = float((model.untimed or model).input_scale[lead])
-    unit = (model.untimed or model).input_units[variable.name]
+    timeless = model.untimed or model
+    variable = timeless.equations.inputs[lead]
+    scale = float(timeless.input_scale[lead])
+    unit = timeless.input_units[variable.name]
     joined: list[list[float]] = []
     for low, high in sorted(proof.open):
         if not np.isfinite([low, high]).all():

@@ -11,16 +11,22 @@ import numpy as np
 
 from linkwork.core.drawing.links import convex_outline
 from linkwork.core.drawing.wheels import ADDENDUM, DEDENDUM
-from linkwork.core.foundation.arrays import ComplexArray
+from linkwork.core.foundation.arrays import Array, ComplexArray
 from linkwork.core.foundation.errors import InputError
 from linkwork.core.foundation.lanes import phase
 from linkwork.core.mechanism.bodies import DiscFigure
 from linkwork.core.mechanism.linkage import Linkage
 from linkwork.core.mechanism.part.gears import ToothedPart
 from linkwork.writers.plates.bodies import Guideway, RigidBody
-from linkwork.writers.plates.gears import FEWEST, STEPS, Wheel, involute_outline, polygons
-from linkwork.writers.plates.outlines import Outline, circle, shapely
-from linkwork.writers.plates.plate import Opening, Plate, Sizes
+from linkwork.writers.plates.gears import (
+    FEWEST,
+    Wheel,
+    involute_outline,
+    touch_within_a_pitch,
+    touching_teeth,
+)
+from linkwork.writers.plates.outlines import Outline, circle, shapely, shapes_of
+from linkwork.writers.plates.plate import Opening, Plate, Sizes, round_holes
 
 _FASTENERS = 3  # of a ring
 
@@ -42,14 +48,10 @@ class Blank:
 
 @dataclass(frozen=True, kw_only=True)
 class WheelPlate:
-    """A wheel's plate; ``fastened``: holes for fasteners to the body's main plate.
-
-    ``whole``: the body has no other plate.
-    """
+    """A wheel's plate; ``fastened``: holes for fasteners to the body's main plate."""
 
     plate: Plate
     fastened: Mapping[str, complex]
-    whole: bool
 
 
 def gear_blank(wheel: Wheel, body: RigidBody) -> Blank:
@@ -112,16 +114,15 @@ def wheel_plate(
         free = abs(away) - room >= sizes.hole + sizes.web
         reach = room if free else min(room, abs(away) / 2.0)
         fastened = {f"{name} 1": center + cmath.rect(reach, phase(away))}
-    openings = (within | fastened).items()
     plate = Plate(
         name=name,
         body=body.name,
         outline=blank.outline,
-        openings=tuple(Opening(name=p, outline=circle(z, hole)) for p, z in openings),
+        openings=round_holes(within | fastened, sizes),
         core=blank.core,
         radius=blank.radius,
     )
-    return WheelPlate(plate=plate, fastened=fastened, whole=whole)
+    return WheelPlate(plate=plate, fastened=fastened)
 
 
 def ring_plate(wheel: Wheel, body: RigidBody, sizes: Sizes) -> WheelPlate:
@@ -131,18 +132,17 @@ def ring_plate(wheel: Wheel, body: RigidBody, sizes: Sizes) -> WheelPlate:
     turns = wheel.phase + math.tau * (np.arange(_FASTENERS) + 0.5) / _FASTENERS
     places = (blank.center + rim * np.exp(1j * turns)).tolist()
     fastened = {f"{name} {k}": place for k, place in enumerate(places, start=1)}
-    holes = (Opening(name=pin, outline=circle(z, sizes.hole / 2.0)) for pin, z in fastened.items())
     outer = rim + sizes.width / 2.0
     plate = Plate(
         name=name,
         body=body.name,
         outline=circle(blank.center, outer),
-        openings=(Opening(name="teeth", outline=blank.outline), *holes),
+        openings=(Opening(name="teeth", outline=blank.outline), *round_holes(fastened, sizes)),
         core=blank.core,
         radius=outer,
         inner=blank.low,
     )
-    return WheelPlate(plate=plate, fastened=fastened, whole=False)
+    return WheelPlate(plate=plate, fastened=fastened)
 
 
 # ----------------------------------------------------------------------
@@ -184,19 +184,10 @@ def rack_meshes(
             disc = next(f for f in part.figures(linkage, {}) if isinstance(f, DiscFigure))
             size = 2.0 * millimetres * disc.radius
             teeth = FEWEST if sizes.module is None else max(1, round(size / sizes.module))
-            blank = Wheel(
-                disc=replace(disc, teeth=teeth),
-                module=size / teeth,
-                phase=0.0,
-                pressure=part.pressure(linkage),
-                backlash=sizes.backlash_of(size / teeth),
-            )
+            blank = Wheel.of(replace(disc, teeth=teeth), millimetres, part.pressure(linkage), sizes)
             pinion = known.get(disc.key, blank)
             if _touch(pinion):
-                raise InputError(
-                    f'the teeth of "{part.name}" touch where they should not, with '
-                    f"{pinion.teeth} teeth of the pinion: give more teeth, or more backlash"
-                )
+                raise touching_teeth(part.name, f"{pinion.teeth} teeth of the pinion")
             name, factor = coupling.slide
             yield RackMesh(name=part.name, pinion=pinion, guide=name, side=-factor)
 
@@ -261,13 +252,11 @@ def rack_plate(
         name=name,
         body=way.runner,
         outline=Outline(corners=corners, bulges=np.zeros(len(corners))),
-        openings=tuple(
-            Opening(name=pin, outline=circle(z, sizes.hole / 2.0)) for pin, z in fastened.items()
-        ),
+        openings=round_holes(fastened, sizes),
         core=(placed(core),),
         radius=0.0,
     )
-    return WheelPlate(plate=plate, fastened=fastened, whole=False)
+    return WheelPlate(plate=plate, fastened=fastened)
 
 
 def _teeth(wheel: Wheel, first: int, last: int) -> ComplexArray:
@@ -291,16 +280,11 @@ def _touch(wheel: Wheel) -> bool:
     teeth = _teeth(wheel, -_TEETH, _TEETH)
     back = -3.0 * wheel.module
     bar = np.append(teeth, [complex(teeth[-1].real, back), complex(teeth[0].real, back)])
-    count = 64
-    while count <= STEPS:
-        turn = math.tau / wheel.teeth * np.arange(count) / count
-        pinion = polygons(1j * radius + np.exp(1j * turn)[:, None] * shape)
-        rack = polygons(radius * turn[:, None] + bar)
-        distance = float(shapely().distance(pinion, rack).min())
-        if distance <= 0.0:
-            return True
-        moved = math.pi / wheel.teeth * (tip + radius) / count
-        if moved < distance:
-            return False
-        count = math.ceil(1.1 * count * moved / distance)
-    return True
+
+    def distance(pitches: Array) -> float:
+        turn = math.tau / wheel.teeth * pitches
+        pinion = shapes_of(1j * radius + np.exp(1j * turn)[:, None] * shape)
+        rack = shapes_of(radius * turn[:, None] + bar)
+        return float(shapely().distance(pinion, rack).min())
+
+    return touch_within_a_pitch(distance, math.pi / wheel.teeth * (tip + radius))

@@ -5,9 +5,11 @@ from __future__ import annotations
 import re
 import struct
 import unicodedata
-from collections.abc import Callable, Iterable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from html import escape
+from importlib import resources
+from typing import Literal
 from xml.etree import ElementTree as Tree
 
 from linkwork.core.drawing.mechanism_scene import Sheet
@@ -32,17 +34,11 @@ _FIGURE_SPACE, _POINT_SPACE = "\u2007", "\u2008"  # as wide as a digit and as a 
 
 
 @dataclass(frozen=True, kw_only=True)
-class Paragraph:
-    """A paragraph of text."""
+class Text:
+    """A text: a ``paragraph``, a ``note`` (a small heading), or a ``listing`` as it is written."""
 
     text: str
-
-
-@dataclass(frozen=True, kw_only=True)
-class Note:
-    """A small heading before the following blocks."""
-
-    text: str
+    style: Literal["paragraph", "note", "listing"] = "paragraph"
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -91,14 +87,7 @@ class Figure:
     number: int = 0
 
 
-@dataclass(frozen=True, kw_only=True)
-class Listing:
-    """A text shown as it is written."""
-
-    text: str
-
-
-Block = Paragraph | Note | Facts | Equation | Table | Figure | Listing
+Block = Text | Facts | Equation | Table | Figure
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -117,6 +106,16 @@ class Document:
     byline: tuple[tuple[str, str], ...]
     sections: tuple[Section, ...]
 
+    @property
+    def author(self) -> str:
+        """The author, if one is stated."""
+        return dict(self.byline).get("author", "")
+
+    @property
+    def author_line(self) -> str:
+        """The lines about the author as one."""
+        return " · ".join(text for _, text in self.byline)
+
     @classmethod
     def numbered(
         cls, title: str, byline: tuple[tuple[str, str], ...], sections: Iterable[Section]
@@ -125,16 +124,17 @@ class Document:
         counts: dict[type, int] = {}
 
         def number(block: Block) -> Block:
-            if isinstance(block, Paragraph):
-                return Paragraph(text=_sentence(block.text))
-            if isinstance(block, Facts):
-                pairs = (
-                    (label, text if label in block.quoted else _sentence(text))
-                    for label, text in block.pairs
-                )
-                return replace(block, pairs=tuple(pairs))
-            if not isinstance(block, Equation | Table | Figure):
-                return block
+            match block:
+                case Text(style="paragraph"):
+                    return replace(block, text=_sentence(block.text))
+                case Facts():
+                    pairs = (
+                        (label, text if label in block.quoted else _sentence(text))
+                        for label, text in block.pairs
+                    )
+                    return replace(block, pairs=tuple(pairs))
+                case Text():
+                    return block
             count = counts[type(block)] = counts.get(type(block), 0) + 1
             if isinstance(block, Equation):
                 return replace(block, number=count)
@@ -144,6 +144,11 @@ class Document:
             replace(section, blocks=tuple(map(number, section.blocks))) for section in sections
         )
         return cls(title=title, byline=byline, sections=listed)
+
+
+def template_text(name: str) -> str:
+    """A file of the package that gives reports their look."""
+    return resources.files(__package__).joinpath("templates", name).read_text("utf-8")
 
 
 def split_columns(columns: Sequence[Column]) -> Iterator[tuple[Column, ...]]:
@@ -251,25 +256,16 @@ _WIDEST, _TALLEST = 150.0, 104.0  # printed [mm]: a heading and two figures fit 
 _SIDES = [re.compile(rb'<svg [^>]*\b%s="([\d.]+)pt"' % side) for side in (b"width", b"height")]
 
 
-@dataclass(frozen=True, kw_only=True)
-class FigureFile:
-    """The content of a picture and its printed width [mm]."""
-
-    number: int
-    content: bytes
-    width: float
-
-
 def figure_files(
     document: Document, kind: str, progress: Callable[[float], None]
-) -> Iterator[FigureFile]:
-    """Every figure as ``svg`` or ``png``."""
+) -> Iterator[tuple[int, bytes, float]]:
+    """The number, the content, ``svg`` or ``png``, and the printed width [mm] of every figure."""
     figures = [b for section in document.sections for b in section.blocks if isinstance(b, Figure)]
     for k, figure in enumerate(figures, 1):
         content = render(figure.picture, kind, dpi=_DPI)
         wide, high = _size(content)
         width = wide * min(1.0, _WIDEST / wide, _TALLEST / high)
-        yield FigureFile(number=figure.number, content=content, width=width)
+        yield figure.number, content, width
         progress(k / len(figures))
 
 
@@ -312,7 +308,7 @@ def office_terms(mathml: str) -> list[str]:
     """
     terms: list[str] = []
     for parts in _terms(mathml):
-        shown = "".join(map(_office, parts))
+        shown = "".join(_translated(part, _office_letter, _OFFICE) for part in parts)
         if terms and parts[0].tag == "mo" and parts[0].text == "=":
             terms[-1] += shown
         else:
@@ -322,7 +318,10 @@ def office_terms(mathml: str) -> list[str]:
 
 def typst_terms(mathml: str) -> list[str]:
     """The terms in the notation of formulas of Typst."""
-    return [" ".join(filter(None, map(_typst, parts))) for parts in _terms(mathml)]
+    return [
+        " ".join(filter(None, (_translated(part, _typst_letter, _TYPST) for part in parts)))
+        for parts in _terms(mathml)
+    ]
 
 
 def _terms(mathml: str) -> Iterator[list[Tree.Element]]:
@@ -338,54 +337,45 @@ def _terms(mathml: str) -> Iterator[list[Tree.Element]]:
     yield here
 
 
-def _office(part: Tree.Element) -> str:
-    inside = [_office(child) for child in part]
-    match part.tag:
-        case "mi" | "mn" | "mo":
-            text = part.text or ""
-            if text in _SILENT:
-                return ""
-            # names of several letters and numbers are upright
-            plain = part.tag != "mi" or len(text) > 1
-            style = '<m:rPr><m:sty m:val="p"/></m:rPr>' if plain else ""
-            return f"<m:r>{style}<m:t>{escape(text)}</m:t></m:r>"
-        case "msub":
-            return f"<m:sSub><m:e>{inside[0]}</m:e><m:sub>{inside[1]}</m:sub></m:sSub>"
-        case "msup":
-            return f"<m:sSup><m:e>{inside[0]}</m:e><m:sup>{inside[1]}</m:sup></m:sSup>"
-        case "mfrac":
-            return f"<m:f><m:num>{inside[0]}</m:num><m:den>{inside[1]}</m:den></m:f>"
-        case "msqrt":
-            hidden = '<m:radPr><m:degHide m:val="1"/></m:radPr><m:deg/>'
-            return f"<m:rad>{hidden}<m:e>{''.join(inside)}</m:e></m:rad>"
-        case _:
-            return "".join(inside)
+#: Elements of MathML in the two languages: 0 and 1 are their children, ``all`` is everything.
+_OFFICE = {
+    "msub": "<m:sSub><m:e>{0}</m:e><m:sub>{1}</m:sub></m:sSub>",
+    "msup": "<m:sSup><m:e>{0}</m:e><m:sup>{1}</m:sup></m:sSup>",
+    "mfrac": "<m:f><m:num>{0}</m:num><m:den>{1}</m:den></m:f>",
+    "msqrt": '<m:rad><m:radPr><m:degHide m:val="1"/></m:radPr><m:deg/><m:e>{all}</m:e></m:rad>',
+}
+_TYPST = {
+    "msub": "attach({0}, b: {1})",
+    "msup": "attach({0}, t: {1})",
+    "mfrac": "frac({0}, {1})",
+    "msqrt": "sqrt({all})",
+}
+_TYPST_SIGNS = {"\u2212": "minus", "+": "plus", "=": "eq", "\u2032": "prime"}
 
 
-def _typst(part: Tree.Element) -> str:
-    inside = [shown for child in part if (shown := _typst(child))]
-    match part.tag:
-        case "mi" | "mn" | "mo":
-            return _typst_letter(part)
-        case "msub":
-            return f"attach({inside[0]}, b: {inside[1]})"
-        case "msup":
-            return f"attach({inside[0]}, t: {inside[1]})"
-        case "mfrac":
-            return f"frac({inside[0]}, {inside[1]})"
-        case "msqrt":
-            return f"sqrt({' '.join(inside)})"
-        case _:
-            return " ".join(inside)
+def _translated(
+    part: Tree.Element, letter: Callable[[str, str], str], forms: Mapping[str, str]
+) -> str:
+    """An element in another language: ``letter`` writes a text with its tag."""
+    if part.tag in ("mi", "mn", "mo"):
+        return letter(part.tag, part.text or "")
+    inside = [shown for child in part if (shown := _translated(child, letter, forms))]
+    return forms.get(part.tag, "{all}").format(*inside, all=" ".join(inside))
 
 
-def _typst_letter(part: Tree.Element) -> str:
-    text = part.text or ""
+def _office_letter(tag: str, text: str) -> str:
+    if text in _SILENT:
+        return ""
+    # names of several letters and numbers are upright
+    plain = tag != "mi" or len(text) > 1
+    style = '<m:rPr><m:sty m:val="p"/></m:rPr>' if plain else ""
+    return f"<m:r>{style}<m:t>{escape(text)}</m:t></m:r>"
+
+
+def _typst_letter(tag: str, text: str) -> str:
     if text in _SILENT:
         return "thin" if text == _SILENT[1] else ""
     quoted = '"' + text.replace("\\", "\\\\").replace('"', '\\"') + '"'
-    if part.tag == "mi":
+    if tag == "mi":
         return f"italic({quoted})" if len(text) == 1 else f"upright({quoted})"
-    if part.tag == "mn":
-        return quoted
-    return {"\u2212": "minus", "+": "plus", "=": "eq", "\u2032": "prime"}.get(text, quoted)
+    return quoted if tag == "mn" else _TYPST_SIGNS.get(text, quoted)

@@ -4,22 +4,18 @@ from __future__ import annotations
 
 import io
 import zipfile
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from datetime import datetime
 from typing import Any
 
-from linkwork.core.foundation.loading import installed_with
 from linkwork.writers.report.document import (
     Block,
     Document,
     Equation,
     Facts,
     Figure,
-    FigureFile,
-    Listing,
-    Note,
-    Paragraph,
     Table,
+    Text,
     figure_files,
     office_terms,
     printed,
@@ -34,29 +30,11 @@ _WIDTH = 166.0  # of a table [mm]
 _FONT, _MONOSPACED = "Arial", "DejaVu Sans Mono"
 
 
-def docx_package() -> Any:
-    """python-docx.
-
-    Raises
-    ------
-    MissingPackageError
-        If it is not installed.
-    """
-    with installed_with("report", "Word reports need python-docx"):
-        import docx
-    return docx
-
-
 def docx_bytes(document: Document, progress: Callable[[float], None]) -> bytes:
-    """The document as the content of a .docx file.
+    """The document as the content of a .docx file."""
+    import docx
 
-    Raises
-    ------
-    MissingPackageError
-        If python-docx is not installed.
-    """
-    docx = docx_package()
-    pictures = {figure.number: figure for figure in figure_files(document, "png", progress)}
+    pictures = {number: picture for number, *picture in figure_files(document, "png", progress)}
     file = docx.Document()
     _Writer(file, pictures).write(document)
     buffer = io.BytesIO()
@@ -80,7 +58,7 @@ def _dateless(content: bytes) -> bytes:
 class _Writer:
     """Writes blocks at the end of a document."""
 
-    def __init__(self, file: Any, pictures: dict[int, FigureFile]) -> None:
+    def __init__(self, file: Any, pictures: Mapping[int, Sequence[Any]]) -> None:
         import docx.enum.text
         import docx.oxml
         import docx.shared
@@ -93,8 +71,8 @@ class _Writer:
         """The title, the lines about the author, and all sections."""
         self._set_up(document)
         self.file.add_heading(document.title, 0)
-        if document.byline:
-            self.file.add_paragraph(" · ".join(text for _, text in document.byline))
+        if document.author_line:
+            self.file.add_paragraph(document.author_line)
         for number, section in enumerate(document.sections, 1):
             self.file.add_heading(f"{number} {section.title}", 1)
             for block in section.blocks:
@@ -102,10 +80,7 @@ class _Writer:
 
     def _set_up(self, document: Document) -> None:
         properties = self.file.core_properties
-        properties.title, properties.author = (
-            document.title,
-            dict(document.byline).get("author", ""),
-        )
+        properties.title, properties.author = document.title, document.author
         properties.comments, properties.last_modified_by = "Written by Linkwork", ""
         properties.created = properties.modified = datetime(*_DATE)
         page, millimetres = self.file.sections[0], self.shared.Mm
@@ -118,10 +93,13 @@ class _Writer:
 
     def _block(self, block: Block) -> None:
         match block:
-            case Paragraph():
+            case Text(style="paragraph"):
                 self.file.add_paragraph(block.text)
-            case Note():
+            case Text(style="note"):
                 self.file.add_heading(block.text, 2)
+            case Text():
+                run = self.file.add_paragraph().add_run(block.text)
+                run.font.size, run.font.name = self.shared.Pt(_CODE), _MONOSPACED
             case Facts():
                 self._facts(block)
             case Equation():
@@ -130,17 +108,12 @@ class _Writer:
                 self._table(block)
             case Figure():
                 self._figure(block)
-            case Listing():
-                self._listing(block)
 
     def _facts(self, facts: Facts) -> None:
-        if not facts.pairs:
-            return
-        grid = self.file.add_table(len(facts.pairs), 2)
-        for k, width in enumerate((_LABEL, _TEXT)):
-            texts = [pair[k] for pair in facts.pairs]
-            self._column(grid, k, texts, width, right=False)
-        self.file.add_paragraph()
+        if facts.pairs:
+            cells = list(map(list, zip(*facts.pairs, strict=True)))
+            self._grid(cells, (_LABEL, _TEXT), (False, False))
+            self.file.add_paragraph()
 
     def _equation(self, equation: Equation) -> None:
         line = self.file.add_paragraph()
@@ -158,14 +131,13 @@ class _Writer:
     def _table(self, table: Table) -> None:
         self._caption(f"Table {table.number}. {table.caption}", above=True)
         cells = [[c.header, *printed(c)] for c in table.columns]
-        grid = self.file.add_table(len(cells[0]), len(cells))
-        needed = [_SPACE + _LETTER * max(map(len, column)) for column in cells]
-        narrowed = [w for w, c in zip(needed, table.columns, strict=True) if c.align != "left"]
-        for k, column in enumerate(table.columns):
-            width = needed[k]
-            if sum(needed) > _WIDTH and column.align == "left":
-                width = min(width, (_WIDTH - sum(narrowed)) / (len(needed) - len(narrowed)))
-            self._column(grid, k, cells[k], width, right=column.align != "left")
+        words = [column.align == "left" for column in table.columns]
+        widths = [_SPACE + _LETTER * max(map(len, column)) for column in cells]
+        if sum(widths) > _WIDTH:  # words are broken into lines
+            numbers = sum(w for w, is_words in zip(widths, words, strict=True) if not is_words)
+            most = (_WIDTH - numbers) / max(sum(words), 1)
+            widths = [min(w, most) if i else w for w, i in zip(widths, words, strict=True)]
+        grid = self._grid(cells, widths, [not is_words for is_words in words])
         for cell in grid.rows[0].cells:
             cell.paragraphs[0].runs[0].font.bold = True
         if table.is_short:
@@ -174,19 +146,22 @@ class _Writer:
         self._rules(grid)
         self.file.add_paragraph()
 
-    def _column(
-        self, grid: Any, k: int, texts: Sequence[str], width: float, *, right: bool
-    ) -> None:
-        """Fill a column of a table; ``width`` [mm]."""
+    def _grid(
+        self, columns: Sequence[Sequence[str]], widths: Sequence[float], right: Sequence[bool]
+    ) -> Any:
+        """A table without lines: ``widths`` of its columns [mm], and which are flush right."""
+        grid = self.file.add_table(len(columns[0]), len(columns))
         grid.autofit = False
-        grid.columns[k].width = self.shared.Mm(width)
-        for place, shown in zip(grid.columns[k].cells, texts, strict=True):
-            place.width = self.shared.Mm(width)
-            line = place.paragraphs[0]
-            line.paragraph_format.space_after = self.shared.Pt(0)
-            if right:
-                line.alignment = self.right
-            line.add_run(shown).font.size = self.shared.Pt(_SMALL)
+        for column, texts, size, flush in zip(grid.columns, columns, widths, right, strict=True):
+            column.width = self.shared.Mm(size)
+            for place, shown in zip(column.cells, texts, strict=True):
+                place.width = self.shared.Mm(size)
+                line = place.paragraphs[0]
+                line.paragraph_format.space_after = self.shared.Pt(0)
+                if flush:
+                    line.alignment = self.right
+                line.add_run(shown).font.size = self.shared.Pt(_SMALL)
+        return grid
 
     def _rules(self, grid: Any) -> None:
         """Lines above and below the head and below the table; the head is repeated on each page."""
@@ -202,15 +177,10 @@ class _Writer:
         head.append(self.parse(f'<w:tblHeader xmlns:w="{_WORD}"/>'))
 
     def _figure(self, figure: Figure) -> None:
-        file = self.pictures[figure.number]
-        self.file.add_picture(io.BytesIO(file.content), width=self.shared.Mm(file.width))
+        content, width = self.pictures[figure.number]
+        self.file.add_picture(io.BytesIO(content), width=self.shared.Mm(width))
         self.file.paragraphs[-1].paragraph_format.keep_with_next = True
         self._caption(f"Figure {figure.number}. {figure.caption}", above=False)
-
-    def _listing(self, listing: Listing) -> None:
-        line = self.file.add_paragraph()
-        run = line.add_run(listing.text)
-        run.font.size, run.font.name = self.shared.Pt(_CODE), _MONOSPACED
 
 
 _WORD = "http://schemas.openxmlformats.org/wordprocessingml/2006/main"

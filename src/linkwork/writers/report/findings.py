@@ -2,54 +2,41 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
-from functools import cache
-from importlib import resources
+from functools import cached_property
 from pathlib import Path
 from typing import Any
 
 from linkwork.circuits.results import Circuits, Configurations
-from linkwork.core.foundation.containers import FrozenDict
+from linkwork.core import motion, textfile
+from linkwork.core.api.mechanism import Mechanism
 from linkwork.core.foundation.errors import InputError, Problem, choices
 from linkwork.core.foundation.files import as_path
 from linkwork.core.foundation.values import Constant, Key, ListOf, PlainNumber, Text, as_told
-from linkwork.core.motion.model import Model
 from linkwork.core.results.check import CheckReport
+from linkwork.core.results.listing.motion_listing import inputs_text
 from linkwork.core.results.motion import Motion
 from linkwork.core.results.position import Position
-from linkwork.core.results.vector_loop import VectorLoop
 from linkwork.core.textfile.keys import FORMAT, Form
 from linkwork.core.textfile.reader import check_format, located_error
 from linkwork.core.textfile.structure import Structure
 from linkwork.core.textfile.toml_text import Lines, bytes_of, data_of, text_of
 from linkwork.design.tolerance_results import Tolerance
-from linkwork.forces.results import Reactions
+from linkwork.design.tolerances import tolerance
+from linkwork.forces.functions import stalls
+from linkwork.forces.results import ForceStatus, Reactions
 from linkwork.forces.stall import Stall
+from linkwork.writers.report.document import template_text
 
 #: The sections that a report can have.
 SECTIONS = (
-    "summary",
-    "drawing",
-    "vectors",
-    "dimensions",
-    "equations",
-    "newton",
-    "motion",
-    "plots",
-    "paths",
-    "circuits",
-    "configurations",
-    "forces",
-    "tolerances",
-    "proof",
-    "versions",
-    "file",
-)
+    "summary", "drawing", "vectors", "dimensions", "equations", "newton", "motion", "plots",
+    "paths", "circuits", "configurations", "forces", "tolerances", "proof", "versions", "file",
+)  # fmt: skip
 #: The templates of the package.
 TEMPLATES = ("engineer", "student")
 
-_FOLDER = "templates"
 _BYLINE = ("author", "institution", "date")
 _NAMES = ListOf(Text(), "quantity")
 _KEYS = Form(
@@ -122,7 +109,7 @@ def template_of(name: str | Path) -> Template:
     """
     shown = str(as_path(name))
     if shown in TEMPLATES:
-        return _shipped(shown)
+        return _read(template_text(f"{shown}.toml"), shown)
     path = as_path(name)
     if not path.exists() and path.parent == Path() and not path.suffix:
         raise InputError(
@@ -130,12 +117,6 @@ def template_of(name: str | Path) -> Template:
             "names a file"
         )
     return _read(text_of(bytes_of(path, shown), shown), shown)
-
-
-@cache
-def _shipped(name: str) -> Template:
-    file = resources.files(__package__).joinpath(_FOLDER, f"{name}.toml")
-    return _read(file.read_text("utf-8"), name)
 
 
 def _read(text: str, name: str) -> Template:
@@ -168,38 +149,164 @@ def _problems(content: Mapping[str, Any]) -> list[Problem]:
 
 
 # ----------------------------------------------------------------------
-# The results that a report shows, computed before it is written.
+# The results that a report shows.
 
 
-@dataclass(frozen=True, kw_only=True, eq=False)
+#: Finished fractions of a report: sweep, circuits.
+SWEPT, FOLLOWED = 0.3, 0.6
+_MOST_TOLERANCES = 6  # quantities, if the template names none
+NO_INPUT, NOT_FOUND = "the mechanism has no input", "no position was found"
+_HIDDEN = "a question of the file hides it: report a copy of the file without [[questions]]"
+#: The sections that would show the answer of a question.
+_HIDING = {
+    "numbers": ("vectors", "newton", "motion", "configurations", "forces", "tolerances"),
+    "charts": ("plots",),
+    "limits": ("motion", "circuits", "proof"),
+    "input": ("vectors", "newton", "configurations"),
+    "equations": ("equations", "vectors", "newton"),
+}
+
+
+def needs(condition: object, reason: str) -> None:
+    """Leave out a section without this condition.
+
+    Raises
+    ------
+    InputError
+        With the reason.
+    """
+    if not condition:
+        raise InputError(reason)
+
+
 class Findings:
-    """The results of one mechanism.
+    """The results of one mechanism, each computed when a section first shows it.
 
     Parameters
     ----------
-    source : str
-        The mechanism file.
-    check : CheckReport
-        How it was read.
-    position : Position
-        The position that is drawn and solved step by step.
-    motion : Motion, optional
-        The sweep over the table of the input.
-    vectors, circuits, configurations, forces, stalls, tolerances
-        The results of the sections that need them.
-    absent : Mapping[str, str]
-        Sections without content, each with its reason.
+    at : number or Mapping[str, number], optional
+        The input of the position that is drawn and solved step by step.
+    configuration : str, optional
+        The configuration or branch of position and motion.
+    progress : callable
+        Called with the finished fraction, up to :data:`FOLLOWED`.
     """
 
-    model: Model
-    source: str
-    check: CheckReport
-    position: Position
-    motion: Motion | None = None
-    vectors: tuple[VectorLoop, ...] = ()
-    circuits: Circuits | None = None
-    configurations: Configurations | None = None
-    forces: Reactions | None = None
-    stalls: tuple[Stall, ...] = ()
-    tolerances: tuple[Tolerance, ...] = ()
-    absent: Mapping[str, str] = FrozenDict()
+    def __init__(
+        self,
+        mechanism: Mechanism,
+        template: Template,
+        at: float | Mapping[str, float] | None = None,
+        configuration: str | None = None,
+        progress: Callable[[float], None] = lambda fraction: None,
+    ) -> None:
+        self.mechanism, self.model, self.template = mechanism, mechanism.model, template
+        self.at, self.configuration, self.progress = at, configuration, progress
+
+    @property
+    def source(self) -> str:
+        """The mechanism file."""
+        read = self.mechanism.read
+        return textfile.write_text(self.mechanism.description) if read is None else read.text
+
+    @cached_property
+    def check(self) -> CheckReport:
+        """How the file was read."""
+        return self.mechanism.check()
+
+    @cached_property
+    def motion(self) -> Motion | None:
+        """The sweep over the table of the input; ``None`` without an input."""
+        if not self.model.description.inputs:
+            return None
+        return self.mechanism.sweep(
+            configuration=self.configuration, progress=lambda part: self.progress(SWEPT * part)
+        )
+
+    @property
+    def cycle(self) -> Motion:
+        """The motion.
+
+        Raises
+        ------
+        InputError
+            If the mechanism has no input, or no position was found.
+        """
+        if self.motion is None:
+            raise InputError(NO_INPUT)
+        needs(self.motion.found.any(), NOT_FOUND)
+        return self.motion
+
+    @cached_property
+    def position(self) -> Position:
+        """The position that is drawn, by default at round values near those of the guess."""
+        swept, steps = self.motion, self.configuration is None
+        position = self.mechanism.solve(self.at, configuration=self.configuration, with_steps=steps)
+        if self.at is not None or swept is None or not swept.found.any():
+            return position
+        model = self.model if steps else self.model.from_position(position)
+        near = motion.solve_round_start(model, swept, position)
+        if not near.status.ok or near.input == position.input:
+            return position
+        return self.mechanism.solve(near.input, with_steps=True) if steps else near
+
+    @property
+    def where(self) -> str:
+        """The input of the position, ``at crank = 60 deg``; "" without an input."""
+        return inputs_text(self.position.input, self.position.input_units)
+
+    @cached_property
+    def circuits(self) -> Circuits:
+        """All circuits."""
+        return self.mechanism.circuits(
+            progress=lambda part: self.progress(SWEPT + (FOLLOWED - SWEPT) * part)
+        )
+
+    @cached_property
+    def configurations(self) -> Configurations:
+        """The configurations at the input of the drawn position."""
+        return self.mechanism.configurations(self.position.input or None)
+
+    @cached_property
+    def forces(self) -> Reactions:
+        """The forces in the rows of the motion."""
+        return self.mechanism.forces(motion=self.cycle)
+
+    @property
+    def stalls(self) -> tuple[Stall, ...]:
+        """Where friction stops the motion."""
+        if ForceStatus.SELF_LOCKING not in self.forces.statuses:
+            return ()
+        return stalls(self.mechanism, motion=self.cycle, configuration=self.configuration)
+
+    @cached_property
+    def tolerances(self) -> tuple[Tolerance, ...]:
+        """The tolerances at the drawn position."""
+        usual = self.position.outputs or self.position.unknowns
+        names = self.template.tolerances_of or tuple(usual)[:_MOST_TOLERANCES]
+        at = self.position.input or None
+        return tuple(
+            tolerance(self.mechanism, of, at, configuration=self.configuration) for of in names
+        )
+
+    def check_hidden(self, section: str) -> None:
+        """Leave out a section that would give the answer of a question.
+
+        Raises
+        ------
+        InputError
+            With the reason.
+        """
+        for question in self.model.description.questions:
+            hidden = {name for part in question.hide for name in _HIDING[part]}
+            needs(section not in hidden | {"file"}, _HIDDEN)
+
+    def shown(self, section: str) -> Any:
+        """The result of a section with the same name; ``None`` if the report leaves it out."""
+        if section not in self.template.sections:
+            return None
+        try:
+            self.check_hidden(section)
+            return getattr(self, section)
+        except InputError:
+            return None

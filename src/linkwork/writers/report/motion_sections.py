@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator, Mapping, Sequence
+from contextlib import suppress
 from dataclasses import replace
 
 import numpy as np
@@ -44,8 +45,8 @@ from linkwork.forces.listing import finite_forces, force_fields, force_status_fi
 from linkwork.writers.charts.chart import Chart
 from linkwork.writers.charts.circuits import circuit_chart
 from linkwork.writers.charts.plotting import motion_plot
-from linkwork.writers.report.document import Block, Facts, Figure, Note, Paragraph, shown_name
-from linkwork.writers.report.findings import Findings, Template
+from linkwork.writers.report.document import Block, Facts, Figure, Text, shown_name
+from linkwork.writers.report.findings import NO_INPUT, NOT_FOUND, Findings, Template, needs
 from linkwork.writers.report.sections import tables
 
 # ----------------------------------------------------------------------
@@ -86,7 +87,7 @@ def check_template(template: Template, model: Model) -> None:
         _spaced(model.rows_in_file_units[:, 0], template.every, model.input_units)
 
 
-def motion(findings: Findings, template: Template) -> Iterator[Block]:
+def motion(findings: Findings) -> Iterator[Block]:
     """Counts and limits, the table of chosen rows with rates, ranges."""
     if findings.motion is None:
         yield from _position(findings)
@@ -96,10 +97,10 @@ def motion(findings: Findings, template: Template) -> Iterator[Block]:
     yield Facts(pairs=(("rows", head), *status_fields(swept), *limit_fields(swept)))
     if not swept.found.any():
         return
-    names = quantities_of(swept, template)
+    names = quantities_of(swept, findings.template)
     if not names:
         return
-    rows = _chosen(swept, template.every)
+    rows = _chosen(swept, findings.template.every)
     for caption, listed in _groups(swept, names):
         columns = _columns(swept, listed, rows)
         yield from tables(caption, [*_inputs(swept, rows), *columns, *_notes(swept, rows)])
@@ -136,7 +137,7 @@ def _shortened(inputs: Column) -> Column:
 def _position(findings: Findings) -> Iterator[Block]:
     """The only position of a mechanism without input."""
     position = findings.position
-    yield Paragraph(text="The mechanism has no input: it has the position below.")
+    yield Text(text="The mechanism has no input: it has the position below.")
     if not position.status.ok:
         return
     values = {**position.unknowns, **position.outputs}
@@ -148,7 +149,7 @@ def _position(findings: Findings) -> Iterator[Block]:
     for caption, listed in (("Unknowns and outputs", values), ("Points", places)):
         if listed:
             cells = [
-                fixed(v) if position.value_units.get(n) in _DECIMALS else short(float(f"{v:.8g}"))
+                fixed(v) if position.value_units.get(n) in _DECIMALS else short(v, 8)
                 for n, v in listed.items()
             ]
             units = [position.value_units.get(name, "") for name in listed]
@@ -199,27 +200,22 @@ def _spaced(values: Array, every: float, units: Mapping[str, str]) -> CountArray
 
 def _groups(swept: Motion, names: Sequence[str]) -> Iterator[tuple[str, list[Asked]]]:
     """The quantities, their first and their second rates, each with a caption."""
-    yield "Motion", [swept.quantity(name) for name in names]
-    for caption, listed in _rates(swept, names):
-        if listed:
-            yield caption, listed
-
-
-def _rates(swept: Motion, names: Sequence[str]) -> Iterator[tuple[str, list[Asked]]]:
-    by = next(iter(swept.inputs))
+    rates = [("Velocities", ".velocity"), ("Accelerations", ".acceleration")]
     if swept.speed is None:
-        pairs = (("First derivatives", "d1"), ("Second derivatives", "d2"))
-        suffix = f" with respect to {by}"
-    else:
-        pairs, suffix = (("Velocities", "velocity"), ("Accelerations", "acceleration")), ""
-    for caption, rate in pairs:
+        by = next(iter(swept.inputs))
+        rates = [
+            (f"First derivatives with respect to {by}", ".d1"),
+            (f"Second derivatives with respect to {by}", ".d2"),
+        ]
+    yield "Motion", [swept.quantity(name) for name in names]
+    for caption, rate in rates:
         listed = []
         for name in names:
-            try:
-                listed.append(swept.quantity(f"{name}.{rate}"))
-            except (InputError, UnknownNameError):  # a rate of a rate, or of a number of parts
-                continue
-        yield caption + suffix, listed
+            # a rate of a rate, or of a number of parts, does not exist
+            with suppress(InputError, UnknownNameError):
+                listed.append(swept.quantity(name + rate))
+        if listed:
+            yield caption, listed
 
 
 def _columns(swept: Motion, listed: Sequence[Asked], rows: CountArray) -> Iterator[Column]:
@@ -262,14 +258,15 @@ def _notes(swept: Motion, rows: CountArray) -> Iterator[Column]:
         yield Column(header="note", cells=cells)
 
 
-def plots(findings: Findings, template: Template) -> Iterator[Block]:
+def plots(findings: Findings) -> Iterator[Block]:
     """The quantities and their rates over the input."""
-    assert findings.motion is not None
-    names = quantities_of(findings.motion, template)
-    over = next(iter(findings.motion.inputs))
-    for caption, listed in _groups(findings.motion, names):
+    cycle = findings.cycle
+    names = quantities_of(cycle, findings.template)
+    needs(names, "the mechanism has no unknown, output or traced point")
+    over = next(iter(cycle.inputs))
+    for caption, listed in _groups(cycle, names):
         about = "Displacements" if caption == "Motion" else caption
-        chart = motion_plot(findings.motion, [quantity.name for quantity in listed])
+        chart = motion_plot(cycle, [quantity.name for quantity in listed])
         yield from figures_of(chart, f"{about} over {pretty(over)}.")
 
 
@@ -288,11 +285,12 @@ def figures_of(chart: Chart, caption: str) -> Iterator[Figure]:
         yield Figure(caption=caption if not k else f"{caption[:-1]} (continued).", picture=part)
 
 
-def paths(findings: Findings, template: Template) -> Iterator[Block]:
+def paths(findings: Findings) -> Iterator[Block]:
     """The paths of the traced points."""
-    assert findings.motion is not None
-    traced = findings.motion.skeleton.traced
-    chart = motion_plot(findings.motion, traced, kind="path")
+    needs(findings.model.compiled.points.names, "the mechanism has no points to draw")
+    traced = findings.cycle.skeleton.traced
+    needs(traced, "the file traces no point")
+    chart = motion_plot(findings.cycle, traced, kind="path")
     what = "Path of point" if len(traced) == 1 else "Paths of points"
     yield Figure(
         caption=f"{what} {', '.join(map(pretty, traced))}.",
@@ -300,11 +298,11 @@ def paths(findings: Findings, template: Template) -> Iterator[Block]:
     )
 
 
-def circuits(findings: Findings, template: Template) -> Iterator[Block]:
+def circuits(findings: Findings) -> Iterator[Block]:
     """Every circuit with its branches, ranges, dead points; a chart of all."""
+    needs(findings.model.description.inputs, NO_INPUT)
     listed = findings.circuits
-    assert listed is not None
-    yield Paragraph(
+    yield Text(
         text="A circuit is the set of all positions that the mechanism can reach without "
         "disassembly; a branch is a part of it between dead points."
     )
@@ -318,10 +316,9 @@ def circuits(findings: Findings, template: Template) -> Iterator[Block]:
         yield from figures_of(chart, f"All circuits over {pretty(listed.input)}.")
 
 
-def configurations(findings: Findings, template: Template) -> Iterator[Block]:
+def configurations(findings: Findings) -> Iterator[Block]:
     """All assembly configurations at the input of the drawn position."""
     listed = findings.configurations
-    assert listed is not None
     kinds = {v.name: Kind(v.kind) for v in findings.model.equations.unknowns}
     where = inputs_text(listed.input, listed.input_units)
     if len(listed):
@@ -338,29 +335,33 @@ def configurations(findings: Findings, template: Template) -> Iterator[Block]:
 # Sections about forces and tolerances.
 
 
-def forces(findings: Findings, template: Template) -> Iterator[Block]:
+def forces(findings: Findings) -> Iterator[Block]:
     """Efforts of the inputs and reactions of the joints."""
-    acting = findings.forces
-    assert acting is not None
-    assert findings.motion is not None
-    rest = "at rest" if findings.motion.speed is None else "with the inertia of its masses"
-    yield Paragraph(text=f"Forces of the mechanism {rest}, over the rows of its motion.")
+    acting, cycle = findings.forces, findings.cycle
+    rest = "at rest" if cycle.speed is None else "with the inertia of its masses"
+    yield Text(text=f"Forces of the mechanism {rest}, over the rows of its motion.")
     yield Facts(pairs=tuple(force_status_fields(acting)))
     listed = finite_forces(acting)
     if listed:
-        yield from tables("Smallest and largest forces", ranges_of(findings.motion, listed))
+        yield from tables("Smallest and largest forces", ranges_of(cycle, listed))
     yield Facts(pairs=tuple(force_fields(acting, findings.stalls)))
     efforts = [name for name in acting.efforts if name in listed]
     if efforts:
-        chart = motion_plot(findings.motion, efforts)
-        over = pretty(next(iter(findings.motion.inputs)))
+        chart = motion_plot(cycle, efforts)
+        over = pretty(next(iter(cycle.inputs)))
         what = "Effort" if len(efforts) == 1 else "Efforts"
         yield from figures_of(chart, f"{what} of the input over {over}.")
 
 
-def tolerances(findings: Findings, template: Template) -> Iterator[Block]:
+def tolerances(findings: Findings) -> Iterator[Block]:
     """How tolerances and clearances affect every requested quantity."""
-    yield Paragraph(
+    position = findings.position
+    needs(position.status.ok, NOT_FOUND)
+    needs(
+        findings.template.tolerances_of or position.outputs or position.unknowns,
+        "the mechanism has no unknown and no output",
+    )
+    yield Text(
         text="Worst case, root sum square and shares are of first order in the deviations and "
         "clearances of the file."
     )
@@ -369,6 +370,6 @@ def tolerances(findings: Findings, template: Template) -> Iterator[Block]:
         if each.status is not SensitivityStatus.FOUND:
             yield Facts(pairs=((each.of, each.status.value),))
             continue
-        yield Note(text=f"{pretty(each.of)}{where}")
+        yield Text(text=f"{pretty(each.of)}{where}", style="note")
         yield Facts(pairs=tuple(tolerance_fields(each)))
         yield from tables(f"Contributions to {pretty(each.of)}{where}", contribution_columns(each))

@@ -2,153 +2,90 @@
 
 from __future__ import annotations
 
+import json
 import tempfile
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Mapping
 from importlib import metadata
 from pathlib import Path
 from typing import Any
 
-from linkwork.core.foundation.loading import installed_with
+from linkwork.core.results.listing.motion_listing import Column
 from linkwork.writers.report.document import (
     Block,
     Document,
     Equation,
     Facts,
     Figure,
-    Listing,
-    Note,
-    Paragraph,
     Table,
+    Text,
     figure_files,
     printed,
+    template_text,
     typst_terms,
 )
 
-_PREAMBLE = """\
-#set document(title: TITLE, author: AUTHOR, date: none)
-#set page(paper: "a4", margin: (x: 20mm, y: 22mm), numbering: "1 / 1")
-#set text(size: 10pt, lang: "en", number-width: "tabular")
-#set par(justify: false)
-#set heading(numbering: "1")
-#show heading: set block(above: 1.6em, below: 0.8em, sticky: true)
-#show raw: set text(size: 8pt)
-#let note(body) = block(above: 1.2em, below: 0.7em, sticky: true, strong(body))
-#let facts(..cells) = grid(columns: (auto, 1fr), column-gutter: 1em, row-gutter: 0.55em,
-  ..cells.pos())
-#let formula(number, body) = block(inset: (left: 1.2em), width: 100%, breakable: false,
-  grid(columns: (1fr, auto), column-gutter: 1em, par(leading: 0.9em, body), number))
-#let cap(body) = block(above: 1.1em, below: 0.5em, sticky: true, text(size: 9pt, body))
-#let listed(caption, short, columns, align, header, ..cells) = block(breakable: not short, {
-  cap(caption)
-  set text(size: 9pt)
-  table(columns: columns, align: align, stroke: none, inset: (x: 5pt, y: 2.6pt),
-    table.hline(stroke: 0.8pt), table.header(..header, table.hline(stroke: 0.4pt)),
-    ..cells, table.hline(stroke: 0.8pt))
-})
-#let shown(path, width, caption) = block(breakable: false, above: 1.2em, below: 1.2em)[
-  #align(center, image(path, width: width))
-  #text(size: 9pt, caption)
-]
-"""
-
-
-def typst_package() -> Any:
-    """Typst.
-
-    Raises
-    ------
-    MissingPackageError
-        If it is not installed.
-    """
-    with installed_with("report", "PDF reports need Typst"):
-        import typst
-    return typst
+_ONE_LINE = 30  # characters of a cell
 
 
 def pdf_bytes(document: Document, progress: Callable[[float], None]) -> bytes:
-    """The document as the content of a PDF file.
+    """The document as the content of a PDF file."""
+    import typst
 
-    Raises
-    ------
-    MissingPackageError
-        If Typst is not installed.
-    """
-    typst = typst_package()
     # Typst reads pictures from a folder only
     with tempfile.TemporaryDirectory() as name:
         folder = Path(name)
-        widths = {}
-        for figure in figure_files(document, "svg", progress):
-            (folder / f"{figure.number}.svg").write_bytes(figure.content)
-            widths[figure.number] = figure.width
-        main = folder / "main.typ"
-        main.write_text(typst_text(document, widths), "utf-8")
-        content: bytes = typst.compile(main, root=folder, format="pdf", timestamp=0)
-    return content
+        widths: dict[int, float] = {}
+        for number, content, widths[number] in figure_files(document, "svg", progress):
+            (folder / f"{number}.svg").write_bytes(content)
+        data = json.dumps(document_data(document, widths))
+        (folder / "report.json").write_text(data, "utf-8")
+        main = folder / "report.typ"
+        main.write_text(template_text(main.name), "utf-8")
+        pdf: bytes = typst.compile(main, root=folder, format="pdf", timestamp=0)
+    return pdf
 
 
-def typst_text(document: Document, widths: Mapping[int, float]) -> str:
-    """The document in Typst's language; ``widths`` of the figures [mm]."""
-    author = dict(document.byline).get("author", "")
-    head = _PREAMBLE.replace("TITLE", _quoted(document.title)).replace(
-        "AUTHOR", f"({_quoted(author)},)" if author else "()"
-    )
-    byline = " · ".join(text for _, text in document.byline)
-    lines = [head, f"#text(size: 18pt, weight: 700, {_quoted(document.title)})", ""]
-    if byline:
-        lines += [f"#text(fill: luma(90), {_quoted(byline)})", ""]
-    for section in document.sections:
-        lines += [f"#heading({_quoted(section.title)})", ""]
-        for block in section.blocks:
-            lines += [*_block(block, widths), ""]
-    lines.append(f"#v(1fr)\n#text(size: 8pt, fill: luma(110), {_quoted(_colophon())})")
-    return "\n".join(lines) + "\n"
+def document_data(document: Document, widths: Mapping[int, float]) -> dict[str, Any]:
+    """The document as JSON-ready data for ``report.typ``; ``widths`` of the figures [mm]."""
+    return {
+        "title": document.title,
+        "author": document.author,
+        "byline": document.author_line,
+        "colophon": f"Written by Linkwork {metadata.version('linkwork')}",
+        "sections": [
+            {"title": section.title, "blocks": [_block_data(b, widths) for b in section.blocks]}
+            for section in document.sections
+        ],
+    }
 
 
-def _colophon() -> str:
-    return f"Written by Linkwork {metadata.version('linkwork')}"
-
-
-def _block(block: Block, widths: Mapping[int, float]) -> Iterator[str]:
+def _block_data(block: Block, widths: Mapping[int, float]) -> dict[str, Any]:
     match block:
-        case Paragraph():
-            yield f"#par({_quoted(block.text)})"
-        case Note():
-            yield f"#note({_quoted(block.text)})"
+        case Text():
+            return {"kind": block.style, "text": block.text}
         case Facts():
-            pairs = (f"text(fill: luma(90), {_quoted(a)}), {_quoted(b)}" for a, b in block.pairs)
-            yield f"#facts({', '.join(pairs)})"
+            return {"kind": "facts", "pairs": block.pairs}
         case Equation():
-            terms = " ".join(typst_terms(block.mathml))
-            yield f"#formula[({block.number})][${terms}$]"
+            formula = " ".join(typst_terms(block.mathml))
+            return {"kind": "equation", "formula": formula, "number": block.number}
         case Table():
-            yield from _table(block)
+            return {
+                "kind": "table",
+                "caption": f"Table {block.number}. {block.caption}",
+                "short": block.is_short,
+                "columns": list(map(_column_data, block.columns)),
+            }
         case Figure():
-            caption = _quoted(f"Figure {block.number}. {block.caption}")
-            width = f"{widths[block.number]:.1f}mm"
-            yield f'#shown("{block.number}.svg", {width}, {caption})'
-        case Listing():
-            yield f"#raw({_quoted(block.text)}, block: true)"
+            return {
+                "kind": "figure",
+                "caption": f"Figure {block.number}. {block.caption}",
+                "file": f"{block.number}.svg",
+                "width": widths[block.number],
+            }
 
 
-def _table(table: Table) -> Iterator[str]:
-    words = [column.align == "left" for column in table.columns]
-    # a single column of words takes the rest of the line
-    wide = [max(map(len, column.cells), default=0) > 30 for column in table.columns]
-    columns = ", ".join(
-        "1fr" if w and long else "auto" for w, long in zip(words, wide, strict=True)
-    )
-    align = ", ".join("left" if word else "right" for word in words)
-    header = ", ".join(f"strong({_quoted(column.header)})" for column in table.columns)
-    caption = _quoted(f"Table {table.number}. {table.caption}")
-    short = "true" if table.is_short else "false"
-    yield f"#listed({caption}, {short}, ({columns},), ({align},), ({header},),"
-    for cells in zip(*map(printed, table.columns), strict=True):
-        yield "  " + ", ".join(map(_quoted, cells)) + ","
-    yield ")"
-
-
-def _quoted(text: str) -> str:
-    """A text as a string of Typst's language."""
-    escaped = text.replace("\\", "\\\\").replace('"', '\\"').replace("\n", "\\n")
-    return f'"{escaped}"'
+def _column_data(column: Column) -> dict[str, Any]:
+    words = column.align == "left"
+    long = words and max(map(len, column.cells), default=0) > _ONE_LINE
+    cells = printed(column)
+    return {"header": column.header, "words": words, "long": long, "cells": cells}

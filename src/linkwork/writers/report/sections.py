@@ -18,6 +18,7 @@ from linkwork.core.foundation.names import canonical, pretty
 from linkwork.core.foundation.statuses import Certification
 from linkwork.core.mechanism.linkage import Draft
 from linkwork.core.mechanism.varied_numbers import varied_numbers
+from linkwork.core.motion import vector_loops
 from linkwork.core.results.listing.check_listing import check_fields, measured_part_columns
 from linkwork.core.results.listing.motion_listing import (
     Column,
@@ -25,7 +26,6 @@ from linkwork.core.results.listing.motion_listing import (
     changes_text,
     evidence_fields,
     fixed,
-    inputs_text,
     lengths,
     radius_measure,
     short,
@@ -33,7 +33,6 @@ from linkwork.core.results.listing.motion_listing import (
     system_columns,
     trail_columns,
 )
-from linkwork.core.results.motion import Motion
 from linkwork.core.results.quantity import Kind
 from linkwork.core.textfile.writer import part_lines
 from linkwork.writers.formulas.rate_formulas import dimension_kinds
@@ -43,14 +42,12 @@ from linkwork.writers.report.document import (
     Equation,
     Facts,
     Figure,
-    Listing,
-    Note,
-    Paragraph,
     Table,
+    Text,
     shown_name,
     split_columns,
 )
-from linkwork.writers.report.findings import Findings, Template
+from linkwork.writers.report.findings import NOT_FOUND, Findings, needs
 
 _TABLES = {
     "dimensions": "Dimensions",
@@ -66,7 +63,7 @@ def tables(caption: str, columns: list[Column]) -> Iterator[Table]:
         yield Table(caption=caption if not k else f"{caption} (continued)", columns=part)
 
 
-def summary(findings: Findings, template: Template) -> Iterator[Block]:
+def summary(findings: Findings) -> Iterator[Block]:
     """What the mechanism is, and how the file was read."""
     description = findings.model.description
     texts = {"purpose": description.purpose, "source": description.source}
@@ -78,30 +75,34 @@ def summary(findings: Findings, template: Template) -> Iterator[Block]:
     yield Facts(pairs=tuple(pairs), quoted=frozenset(texts))
 
 
-def drawing(findings: Findings, template: Template) -> Iterator[Block]:
+def drawing(findings: Findings) -> Iterator[Block]:
     """The position with its dimensions, and the paths of traced points."""
+    needs(findings.position.status.ok, NOT_FOUND)
+    needs(findings.model.compiled.points.names, "the mechanism has no points to draw")
     options = SceneOptions(dimensions=True, title="")
     scene = scene_of(findings.position, findings.motion, options=options)
     description = findings.model.description
     hidden = any("input" in question.hide for question in description.questions)
-    where = "" if hidden else inputs_text(findings.position.input, findings.position.input_units)
+    where = "" if hidden else findings.where
     traced_points = findings.motion is not None and findings.motion.skeleton.traced
     paths = ", with the paths of traced points" if traced_points else ""
     caption = f"The mechanism {where}".rstrip() + f"{paths}. Lengths in {description.length}."
     yield Figure(caption=caption, picture=scene)
 
 
-def vectors(findings: Findings, template: Template) -> Iterator[Block]:
+def vectors(findings: Findings) -> Iterator[Block]:
     """The loop equations as vectors: a diagram and their sizes and directions."""
-    where = inputs_text(findings.position.input, findings.position.input_units)
-    options = SceneOptions(vectors=findings.vectors, title="", arrows=False)
+    needs(findings.position.status.ok, NOT_FOUND)
+    needs(findings.mechanism.loop_equations.loops, "the mechanism has no loop equations")
+    loops = vector_loops(findings.model, findings.position)
+    options = SceneOptions(vectors=loops, title="", arrows=False)
     scene = scene_of(findings.position, None, options=options)
     yield Figure(
-        caption=f"The loop equations as vectors, head to tail, {where}".rstrip(" ,") + ".",
+        caption=f"The loop equations as vectors, head to tail, {findings.where}".rstrip(" ,") + ".",
         picture=scene,
     )
     unit = findings.model.description.length
-    for k, loop in enumerate(findings.vectors, 1):
+    for k, loop in enumerate(loops, 1):
         sides = [("left", vector) for vector in loop.left]
         sides += [("right", vector) for vector in loop.right]
         values = [vector.value for _, vector in sides]
@@ -115,11 +116,11 @@ def vectors(findings: Findings, template: Template) -> Iterator[Block]:
             Column(header=f"y [{unit}]", cells=lengths(z.imag for z in values), align="point"),
         ]
         yield from tables(
-            f"Vectors of loop {k}, {pretty(loop.label)}, {where}".rstrip(" ,"), columns
+            f"Vectors of loop {k}, {pretty(loop.label)}, {findings.where}".rstrip(" ,"), columns
         )
 
 
-def dimensions(findings: Findings, template: Template) -> Iterator[Block]:
+def dimensions(findings: Findings) -> Iterator[Block]:
     """The given numbers by their tables in the file, then the parts."""
     description = findings.model.description
     kinds = {v.name: v.kind for v in findings.model.equations.variables}
@@ -185,7 +186,7 @@ def _points(findings: Findings) -> Iterator[Table]:
     yield from tables("Coordinates of points in the file", columns)
 
 
-def equations(findings: Findings, template: Template) -> Iterator[Block]:
+def equations(findings: Findings) -> Iterator[Block]:
     """The closure equations in complex form and as scalar equations."""
     sheet = EquationSheet(findings.model.equations)
     printed = sheet.equations
@@ -197,29 +198,30 @@ def equations(findings: Findings, template: Template) -> Iterator[Block]:
     ]
     yield Facts(pairs=tuple(listed))
     if not printed.labels:
-        yield Paragraph(text="There is no loop: all positions follow from the inputs directly.")
+        yield Text(text="There is no loop: all positions follow from the inputs directly.")
     mathml, latex = MathML(), Latex()
     if printed.loops:
-        yield Note(text="Loop closure equations in complex form")
+        yield Text(text="Loop closure equations in complex form", style="note")
         for loop in printed.loops:
             yield Equation(mathml=sheet.loop(loop, mathml).element(), latex=sheet.loop(loop, latex))
-        yield Note(text="Scalar equations: real parts, imaginary parts, others")
+        yield Text(text="Scalar equations: real parts, imaginary parts, others", style="note")
     rows = zip(sheet.real_rows(mathml), sheet.real_rows(latex), strict=True)
     for row, tex in rows:
         zero = mathml.equation(row, mathml.number("0"))
         yield Equation(mathml=zero.element(), latex=f"{tex} = 0")
     for law in printed.laws:
         if law.meaning:
-            yield Paragraph(text=f"{pretty(law.label)}: {law.meaning}")
+            yield Text(text=f"{pretty(law.label)}: {law.meaning}")
 
 
-def newton(findings: Findings, template: Template) -> Iterator[Block]:
+def newton(findings: Findings) -> Iterator[Block]:
     """The iterations of every block: the iterates, then F, J and Δ of each."""
     position, units = findings.position, findings.model.units
+    needs(findings.mechanism.loop_equations.unknowns, "the mechanism has no unknowns")
+    needs(position.steps, "a chosen configuration has no iterations from the guess")
     kinds = {v.name: Kind(v.kind) for v in findings.model.equations.unknowns}
-    where = inputs_text(position.input, position.input_units)
-    yield Paragraph(
-        text=f"Newton-Raphson solves F(x) = 0 from the guess of the file {where}".rstrip()
+    yield Text(
+        text=f"Newton-Raphson solves F(x) = 0 from the guess of the file {findings.where}".rstrip()
         + ": in each iteration J Δ = −F gives the change Δ of the unknowns, with J = ∂F/∂x "
         "(angles in radians)."
     )
@@ -227,39 +229,35 @@ def newton(findings: Findings, template: Template) -> Iterator[Block]:
         block = ", ".join(map(pretty, trail.equations))
         yield from tables(f"Iterates of {block}", trail_columns(trail, kinds, units))
         if not trail.status.ok:
-            yield Paragraph(text=f"{trail.status.value}.")
+            yield Text(text=f"{trail.status.value}.")
         for step in trail.steps[:-1]:
             yield from tables(f"F and J of {block} at k = {step.k}", system_columns(trail, step))
-            yield Paragraph(text=f"Δ: {changes_text(step, kinds, units)}")
+            yield Text(text=f"Δ: {changes_text(step, kinds, units)}")
 
 
 # ----------------------------------------------------------------------
 # Sections about evidence: proofs, versions, the file.
 
 
-def proof(findings: Findings, template: Template) -> Iterator[Block]:
+def proof(findings: Findings) -> Iterator[Block]:
     """One paragraph on which results are proved, and the evidence in numbers."""
-    sentences = [*_positions(findings), *_lists(findings), *_unproved(findings)]
-    yield Paragraph(text=" ".join(sentences))
+    others = [name for name in ("forces", "tolerances") if findings.shown(name)]
+    listed = " and ".join(", ".join(["rates", "plots", *others]).rsplit(", ", 1))
+    unproved = f"Not proved are {listed}: they are computed in double precision from the positions."
+    yield Text(text=" ".join([*_positions(findings), *_lists(findings), unproved]))
     if findings.motion is not None and findings.motion.found.any():
-        yield Facts(pairs=tuple(evidence_fields(findings.motion, _measure(findings))))
-
-
-def _measure(findings: Findings) -> str:
-    return " of the longest link" if findings.model.equations.loops else ""
-
-
-def _radius(findings: Findings) -> str:
-    return radius_measure(findings.model.equations.loops, findings.model.equations.real)
+        measure = " of the longest link" if findings.model.equations.loops else ""
+        yield Facts(pairs=tuple(evidence_fields(findings.motion, measure)))
 
 
 def _positions(findings: Findings) -> Iterator[str]:
-    motion = findings.motion
+    motion, equations = findings.motion, findings.model.equations
+    radius = radius_measure(equations.loops, equations.real)
     if motion is None:
         if not findings.position.status.ok:
             yield f"No position was found: {findings.position.message}."
             return
-        certificate = certificate_text(findings.position.certificate, _radius(findings))
+        certificate = certificate_text(findings.position.certificate, radius)
         yield f"Certificate of the position: {certificate}."
         return
     there = int(motion.found.sum())
@@ -269,9 +267,10 @@ def _positions(findings: Findings) -> Iterator[str]:
     proved = np.flatnonzero(motion.certified)
     yield f"Rows with a complete proof: {len(proved)}."
     if len(proved):
+        largest = significant(float(motion.radius[proved].max()), 2)
         yield (
-            f"In each of these, a true position lies within {_largest(motion, proved)}"
-            f"{_radius(findings)} of the computed one, no other lies near it, and the motion from "
+            f"In each of these, a true position lies within {largest}"
+            f"{radius} of the computed one, no other lies near it, and the motion from "
             "the start to it stays on one branch."
         )
     for reason in Certification:
@@ -282,38 +281,26 @@ def _positions(findings: Findings) -> Iterator[str]:
             yield f"Rows without it: {count}; {reason.value}."
 
 
-def _largest(motion: Motion, rows: np.ndarray) -> str:
-    return f"{significant(float(motion.radius[rows].max()), 2)}"
-
-
 def _lists(findings: Findings) -> Iterator[str]:
     """How many circuits and configurations are proved, and whether their lists are complete."""
-    if findings.circuits is not None:
-        certified = sum(circuit.certified for circuit in findings.circuits)
-        if len(findings.circuits):
-            yield f"Circuits proved to be one curve: {certified} of {len(findings.circuits)}."
-        yield _sentence(findings.circuits.message)
-    if findings.configurations is not None:
-        certified = sum(p.certificate.certified for p in findings.configurations)
-        if len(findings.configurations):
-            yield f"Proved configurations: {certified} of {len(findings.configurations)}."
-        yield _sentence(f"configurations: {findings.configurations.message}")
+    circuits, configurations = findings.shown("circuits"), findings.shown("configurations")
+    if circuits is not None:
+        certified = sum(circuit.certified for circuit in circuits)
+        if len(circuits):
+            yield f"Circuits proved to be one curve: {certified} of {len(circuits)}."
+        yield _sentence(circuits.message)
+    if configurations is not None:
+        certified = sum(p.certificate.certified for p in configurations)
+        if len(configurations):
+            yield f"Proved configurations: {certified} of {len(configurations)}."
+        yield _sentence(f"configurations: {configurations.message}")
 
 
 def _sentence(text: str) -> str:
     return f"{text[:1].upper()}{text[1:]}."
 
 
-def _unproved(findings: Findings) -> Iterator[str]:
-    """What carries no proof."""
-    others = ["rates", "plots"]
-    others += ["forces"] if findings.forces is not None else []
-    others += ["tolerances"] if findings.tolerances else []
-    listed = f"{', '.join(others[:-1])} and {others[-1]}"
-    yield f"Not proved are {listed}: they are computed in double precision from the positions."
-
-
-def versions(findings: Findings, template: Template) -> Iterator[Block]:
+def versions(findings: Findings) -> Iterator[Block]:
     """The programs that computed the results."""
     yield Facts(
         pairs=(
@@ -324,7 +311,7 @@ def versions(findings: Findings, template: Template) -> Iterator[Block]:
     )
 
 
-def file(findings: Findings, template: Template) -> Iterator[Block]:
+def file(findings: Findings) -> Iterator[Block]:
     """The mechanism file, complete."""
-    yield Paragraph(text="All results of this report are computed from the file below.")
-    yield Listing(text=findings.source)
+    yield Text(text="All results of this report are computed from the file below.")
+    yield Text(text=findings.source, style="listing")
