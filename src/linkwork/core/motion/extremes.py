@@ -397,7 +397,7 @@ def _reached(
         linear = solver.linearise(v)
         places = [at for at in expansions(solver, v, linear) if isinstance(at, Expansion)]
         found = reach(solver, v, np.where(holds[:, None], wide, 0.0), places)
-        bound[:, :n], holds = found.error_bound, holds & found.holds
+        bound[:, :n], holds = found.error_bound[:, :n], holds & found.holds
         apart = found.isolation_radius
         near = prove(solver, v, rounding, places).error_bound
         first = solver.rates(v, rate, linear).first

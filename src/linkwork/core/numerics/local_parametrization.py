@@ -167,7 +167,7 @@ def same_position(leads: Parametrizations, a: Array, b: Array, gained: Array | N
             errors = second.error_bound[0, :-1]
             if (off[:-1] + errors < first.isolation_radius[0]).all():
                 return True
-            if (off[:-1] > errors + first.error_bound[0]).any():
+            if (off[:-1] > errors + first.error_bound[0, :-1]).any():
                 return False
     rates = own.solver.rates(found, own.path.rate)
     allowed = min(_COINCIDE, _ROUNDINGS * EPSILON * float(rates.condition.max()) * size)

@@ -419,14 +419,9 @@ def prove_path(
     if len(pieces) == 1:
         return pieces[0]
     # neighbouring pieces share one position
-    proofs = [pieces[0].position, *[_part(piece.position, slice(1, None)) for piece in pieces[1:]]]
+    proofs = [piece.position.take(slice(1, None)) for piece in pieces[1:]]
     return ProvenPath(
-        position=Proof(
-            holds=np.concatenate([p.holds for p in proofs]),
-            existence_radius=np.concatenate([p.existence_radius for p in proofs]),
-            uniqueness_radius=np.concatenate([p.uniqueness_radius for p in proofs]),
-            error_bound=np.concatenate([p.error_bound for p in proofs]),
-        ),
+        position=Proof.concatenate([pieces[0].position, *proofs]),
         connected=np.concatenate([piece.connected for piece in pieces]),
         pieces=np.concatenate([piece.pieces for piece in pieces]),
         given_up=np.concatenate([piece.given_up for piece in pieces]),
@@ -490,7 +485,7 @@ def prove_paths(
             steps = slice(strand.begin, strand.end - 1)
             found.append(
                 ProvenPath(
-                    position=_part(whole.position, slice(strand.begin, strand.end)),
+                    position=whole.position.take(slice(strand.begin, strand.end)),
                     connected=whole.connected[steps],
                     pieces=whole.pieces[steps],
                     given_up=whole.given_up[steps],
@@ -510,15 +505,6 @@ def _groups(sizes: Sequence[int]) -> list[list[int]]:
         found[-1].append(k)
         room -= size
     return found
-
-
-def _part(p: Proof, rows: slice) -> Proof:
-    return Proof(
-        holds=p.holds[rows],
-        existence_radius=p.existence_radius[rows],
-        uniqueness_radius=p.uniqueness_radius[rows],
-        error_bound=p.error_bound[rows],
-    )
 
 
 def _piece(

@@ -21,7 +21,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from linkwork.core.foundation.arrays import Array, IndexArray, matrix_vector
+from linkwork.core.foundation.arrays import Array, matrix_vector
 from linkwork.core.foundation.rounding import EPSILON, PROOF_SLACK, UNIT_ROUNDOFF
 from linkwork.core.foundation.statuses import CONVERGED, CircuitEnd
 from linkwork.core.numerics.block_solver import Block, BlockSolver, Linearised
@@ -112,9 +112,8 @@ def prove_dead_point(led: Parametrization, v: Array, place: int) -> FoldProof | 
 def _turns_within(led: Parametrization, v: Array, place: int, width: float) -> FoldProof | None:
     """The proof with an interval of the leader of that half width, or ``None``."""
     solver = led.solver
-    whole = width + 2.0 * UNIT_ROUNDOFF * (
-        abs(float(v[-1])) + width
-    )  # the ends are rounded themselves
+    # the ends are rounded themselves
+    whole = width + 2.0 * UNIT_ROUNDOFF * (abs(float(v[-1])) + width)
     at_v = expansions(solver, v[None, :], exact=True)
     box = reach(solver, v[None, :], np.full((1, 1), whole), at_v)
     if not box.holds[0]:
@@ -134,7 +133,7 @@ def _turns_within(led: Parametrization, v: Array, place: int, width: float) -> F
     if not (turned and (off < box.isolation_radius).all()):
         return None
     weights = solver.variable_scale
-    error_bound = np.append(box.error_bound[0], whole)
+    error_bound = box.error_bound[0]
     return FoldProof(
         error_bound=error_bound,
         isolation_radius=box.isolation_radius[0],
@@ -160,15 +159,13 @@ def _rate_errors(solver: BlockSolver, v: Array, rates: Array) -> _Errors | None:
         return None
     errors = np.zeros_like(rates)
     for block, part, at in zip(solver.blocks, linear, places, strict=True):
-        here, box, d, known = (
-            x[:, block.variables] for x in (v, position.error_bound, rates, errors)
-        )
+        box, d, known = (x[:, block.variables] for x in (position.error_bound, rates, errors))
         known[:, : len(block.unknowns)] = 0.0
         if isinstance(at, Enclosed):
             y, z = _terms_over_box(at, box, d, known)
         else:
             assert isinstance(at, Expansion)  # the position is proved, with arrays
-            y, z = _terms(block, part, at, here, box, d, known)
+            y, z = _terms(block, part, at, box, d, known)
         found = _block_errors(block, y, z)
         if found is None:
             return None
@@ -193,34 +190,32 @@ def _terms(
     block: Block,
     part: Linearised,
     at: Expansion,
-    here: Array,
     box: Array,
     d: Array,
     known: Array,
 ) -> tuple[Array, Array]:
     """y and Z times the weights, (B, n) each, with e ≤ y + Z e for the errors e of a block's rates.
 
-    ``here``, ``box``, ``d`` (B, N): its variables, how far they may be off, and their rates;
+    ``box``, ``d`` (B, N): how far its variables may be off, and their rates;
     ``known``: the errors of the rates of its known variables, 0 for its own.
     """
-    n, system = len(block.unknowns), block.system
-    bend = _Bend(at.phase, at.slide, at.weights, at.pair_length, at.pair_group)
+    n = len(block.unknowns)
     # |A J d|: as computed, the rounding of J, and that of the products
     size, along = np.abs(part.inverse), np.abs(d)
-    slip = matrix_vector(system.curvature(here, part.inverse).jacobian_rounding, along)
+    slip = matrix_vector(at.bend.jacobian_rounding, along)
     slip += (d.shape[1] + n + 4) * UNIT_ROUNDOFF * matrix_vector(np.abs(part.jacobian), along)
     # eq. (39): |A J d|
     y = np.abs(matrix_vector(part.inverse, matrix_vector(part.jacobian, d))) + matrix_vector(
         size, slip
     )
-    y += bend.between(box, along)
+    y += at.slopes_change(box, along)
     # eq. (39): |A J_k| |e_k|
-    y = (y + matrix_vector(at.slope, known[:, n:]) + bend.between(box, known)) * PROOF_SLACK
-    w = system.variable_scale[:n]
+    y = (y + matrix_vector(at.slope, known[:, n:]) + at.slopes_change(box, known)) * PROOF_SLACK
+    w = block.system.variable_scale[:n]
     unit = np.zeros_like(d)
     unit[:, :n] = w
     z = (
-        matrix_vector(at.defect, np.broadcast_to(w, y.shape)) + bend.between(box, unit)
+        matrix_vector(at.defect, np.broadcast_to(w, y.shape)) + at.slopes_change(box, unit)
     ) * PROOF_SLACK
     return y, z
 
@@ -235,32 +230,6 @@ def _block_errors(block: Block, y: Array, z: Array) -> Array | None:
     norm = (y / w).max(axis=1) / room * PROOF_SLACK
     found: Array = (y + z * norm[:, None]) * PROOF_SLACK
     return found if np.isfinite(found).all() else None
-
-
-class _Bend:
-    """|A (J(v + a) - J(v)) b| for changes and directions of known size, (B, n)."""
-
-    def __init__(
-        self,
-        phase: Array,
-        slide: Array,
-        weights: Array,
-        pair_length: IndexArray,
-        pair_group: IndexArray,
-    ) -> None:
-        self.phase, self.slide, self.weights = phase, slide, weights
-        self.length, self.group = pair_length, pair_group
-
-    def between(self, a: Array, b: Array) -> Array:
-        """For a and b (B, N), neither negative."""
-        turned, turning = a @ self.weights, b @ self.weights
-        rows = matrix_vector(self.phase, turned * turning)
-        if self.length.size:
-            longer, slides = a[:, self.length], b[:, self.length]
-            by = turned[:, self.group], turning[:, self.group]
-            pairs = longer * by[1] + slides * by[0]
-            rows += matrix_vector(self.slide, pairs)
-        return rows
 
 
 # ----------------------------------------------------------------------
