@@ -14,7 +14,6 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
-from typing import Protocol
 
 import numpy as np
 
@@ -23,7 +22,7 @@ from linkwork.core.foundation.rounding import EPSILON
 from linkwork.core.numerics.block_solver import BlockSolver
 from linkwork.core.numerics.branch_tracking import InputPath, Node, predict
 from linkwork.core.numerics.decomposition import JoinedBlocks, closure_of
-from linkwork.core.numerics.system import System
+from linkwork.core.numerics.system import SmallSystem, System
 
 _STEPS = 12
 
@@ -45,24 +44,10 @@ class KnownJet:
         return cls(lambda t: (y, first, second))
 
 
-class Equations(Protocol):
-    """The part of a System that locating a crossing uses."""
-
-    @property
-    def unknowns(self) -> int: ...
-    @property
-    def equation_scale(self) -> Array: ...
-    @property
-    def variable_scale(self) -> Array: ...
-    def jacobian(self, v: Array) -> Array: ...
-    def residual_and_jacobian(self, v: Array) -> tuple[Array, Array]: ...
-    def hessians(self, v: Array, weights: Array) -> Array: ...
-
-
 class CrossingSystem:
     """The extended system of some equations, in scaled variables and equations."""
 
-    def __init__(self, system: Equations, known: KnownJet) -> None:
+    def __init__(self, system: SmallSystem, known: KnownJet) -> None:
         self.system, self.known = system, known
         self.n = system.unknowns
         self.weights = system.variable_scale[: self.n]
@@ -88,7 +73,7 @@ class CrossingSystem:
         v, basis, second = self._at(x, t)
         matrix: Array = basis @ self.system.hessians(v[0], (w / self.scale)[None, :])[0] @ basis.T
         if second.any():  # known variables that do not move at a constant rate
-            slope = self.system.jacobian(v)[0, :, self.n :]
+            slope = self.system.residual_and_jacobian(v)[1][0, :, self.n :]
             matrix[self.n, self.n] += float(w @ (slope @ second / self.scale))
         return matrix
 
@@ -356,7 +341,9 @@ class _Located:
     other: Array
 
 
-def _locate(system: Equations, known: KnownJet, x: Array, t: float, own: Array) -> _Located | None:
+def _locate(
+    system: SmallSystem, known: KnownJet, x: Array, t: float, own: Array
+) -> _Located | None:
     """The crossing near (x, t); ``own`` (n,) is the derivative of the branch that is followed."""
     crossing = CrossingSystem(system, known)
     found = crossing.solve(x, t)

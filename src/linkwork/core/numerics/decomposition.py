@@ -13,7 +13,7 @@ from functools import cached_property
 
 import numpy as np
 
-from linkwork.core.foundation.arrays import Array, BoolArray, IndexArray
+from linkwork.core.foundation.arrays import Array, IndexArray
 from linkwork.core.numerics.block_solver import Block, BlockSolver
 
 
@@ -297,41 +297,11 @@ class JoinedBlocks:
         """(N,)."""
         return self.solver.variable_scale[self.order]
 
-    @property
-    def is_angle(self) -> BoolArray:
-        """(N,)."""
-        found = np.zeros(self.solver.variables, dtype=bool)
-        for block in self.blocks:
-            found[block.variables] |= block.system.is_angle
-        return found[self.order]
-
-    @property
-    def single(self) -> None:
-        """The blocks are joined as arrays only."""
-
     def _whole(self, v: Array) -> Array:
+        """Variables (B, N) of this system's order in that of the whole."""
         whole = np.zeros((len(v), self.solver.variables))
         whole[:, self.order] = v
         return whole
-
-    def residual(self, v: Array) -> Array:
-        """F, (B, n)."""
-        whole = self._whole(v)
-        parts = [block.system.residual(whole[:, block.variables]) for block in self.blocks]
-        return np.concatenate(parts, axis=1)
-
-    def exact_residual(self, v: Array) -> tuple[Array, Array]:
-        """F at one position v (N,), (n,), with as little rounding as the equations allow, and a
-        bound of its error.
-        """
-        whole = self._whole(v[None, :])[0]
-        parts = [block.system.exact_residual(whole[block.variables]) for block in self.blocks]
-        values, errors = zip(*parts, strict=True)
-        return np.concatenate(values), np.concatenate(errors)
-
-    def jacobian(self, v: Array) -> Array:
-        """dF/dv, (B, n, N)."""
-        return self.residual_and_jacobian(v)[1]
 
     def residual_and_jacobian(self, v: Array) -> tuple[Array, Array]:
         """F, (B, n), and dF/dv, (B, n, N)."""
@@ -350,17 +320,6 @@ class JoinedBlocks:
             row += f.shape[1]
         return np.concatenate(residual, axis=1), jacobian
 
-    def second_directional_derivative(self, v: Array, d: Array) -> Array:
-        """D²F[d, d], (B, n)."""
-        whole, direction = self._whole(v), self._whole(d)
-        parts = [
-            block.system.second_directional_derivative(
-                whole[:, block.variables], direction[:, block.variables]
-            )
-            for block in self.blocks
-        ]
-        return np.concatenate(parts, axis=1)
-
     def hessians(self, v: Array, weights: Array) -> Array:
         """Second derivatives of K sums of equations, (K, N, N), with ``weights`` (K, n)."""
         whole, order = self._whole(v[None, :])[0], self.order
@@ -373,12 +332,3 @@ class JoinedBlocks:
             )
             row += n
         return found[:, order[:, None], order]
-
-    def mixed(self, v: Array, a: Array, b: Array) -> Array:
-        """D²F[a, b], (B, n), by polarisation."""
-        # eq. (5)
-        half: Array = 0.25 * (
-            self.second_directional_derivative(v, a + b)
-            - self.second_directional_derivative(v, a - b)
-        )
-        return half

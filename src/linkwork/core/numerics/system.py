@@ -37,6 +37,11 @@ class SmallSystem(Protocol):
     def residual_and_jacobian(self, v: Array) -> tuple[Array, Array]:
         """F, (B, m), and dF/dv, (B, m, N)."""
 
+    def hessians(self, v: Array, weights: Array) -> Array:
+        """Second derivatives of K sums of equations at one position v (N,), (K, N, N); ``weights``
+        (K, m): the factor of every equation in each sum.
+        """
+
 
 class System(SmallSystem, Protocol):
     """Equations with the further functions that path following and proofs need."""
@@ -58,11 +63,6 @@ class System(SmallSystem, Protocol):
 
     def second_directional_derivative(self, v: Array, d: Array) -> Array:
         """D²F[d, d], (B, m)."""
-
-    def hessians(self, v: Array, weights: Array) -> Array:
-        """Second derivatives of K sums of equations at one position v (N,), (K, N, N); ``weights``
-        (K, m): the factor of every equation in each sum.
-        """
 
     @property
     def has_curvature_bound(self) -> bool:
