@@ -411,7 +411,6 @@ def test_a_proof_stops_at_its_allowance_and_begins_at_the_anchor(
     lanes: int, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(step_halving, "_LANES", lanes)
-    monkeypatch.setattr(step_halving, "_SHORTER", np.ones(1))  # none is divided at once
     theta = np.radians(np.arange(0.0, 361.0, 60.0))
     solver, v = four_bar_at(ROCKER, theta, 1)
     points = beads_of(solver, v)
@@ -435,7 +434,6 @@ def test_a_proof_stops_at_its_allowance_and_begins_at_the_anchor(
 
 def test_steps_beyond_one_that_is_refused_are_left_alone(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(step_halving, "_LANES", 1)  # one after the other
-    monkeypatch.setattr(step_halving, "_SHORTER", np.ones(1))  # none is divided at once
     theta = np.radians(np.arange(0.0, 361.0, 60.0))
     solver, v = four_bar_at(ROCKER, theta, 1)
     v[2] = four_bar_at(ROCKER, theta, -1)[1][2]
@@ -584,17 +582,3 @@ def test_a_step_to_another_branch_is_soon_refused() -> None:
     np.testing.assert_array_equal(found.connected, [True, True, False, False, True, True])
     # a step that shrinks to nothing before it is refused takes 45 halvings
     assert found.pieces.max() < 40
-
-
-def test_steps_divided_at_once_are_proved_as_halved_ones_are(
-    monkeypatch: pytest.MonkeyPatch,
-) -> None:
-    theta = np.linspace(0.0, 2.0 * np.pi, 9)
-    solver, v = four_bar_at(ROCKER, theta, 1)
-    points = beads_of(solver, v)
-    divided = prove_path(solver, PATH, points)
-    monkeypatch.setattr(step_halving, "_SHORTER", np.ones(1))  # none is divided at once
-    halved = prove_path(solver, PATH, points)
-    assert divided.connected.all()
-    assert halved.connected.all()
-    assert divided.pieces.sum() <= 1.5 * halved.pieces.sum()
