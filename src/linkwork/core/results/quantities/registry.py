@@ -328,9 +328,7 @@ def nearest(name: str, known: Iterable[str]) -> str:
 
 
 def _with_rate(asked: Asked, rate: Rate | None) -> Asked:
-    if rate is None:
-        return asked
-    return replace(asked, rate=rate)
+    return asked if rate is None else replace(asked, rate=rate)
 
 
 def _coordinates(points: Iterable[str]) -> Iterator[str]:
