@@ -67,22 +67,6 @@ def node_between(
     return nodes[-1] if nodes and end is None else None
 
 
-def share_at(place: int, low: Node, high: Node, value: float) -> float:
-    """The fraction of a step at which the cubic through a variable has a value."""
-    h = high.t - low.t
-    ends = tuple(float(x[place]) for x in (low.v, low.first, high.v, high.first))
-    # the cubic is monotonic in a divided step, so bisection finds the only place
-    rising = ends[2] > ends[0]
-    s0, s1 = 0.0, 1.0
-    for _ in range(60):
-        s = 0.5 * (s0 + s1)
-        if (hermite(s, h, *ends) < value) == rising:
-            s0 = s
-        else:
-            s1 = s
-    return 0.5 * (s0 + s1)
-
-
 def one_way(led: Parametrization, place: int, before: Node, after: Node) -> list[Node]:
     """A step, divided where a variable turns back within it."""
     chain = [before]
@@ -302,24 +286,9 @@ class StartingValue:
         """
         place = led.place(self.leads.parameter)
         value, low, high = passed
-        best: Node | None = None
-        off = _REACHED * max(1.0, abs(value))
-        for _ in range(60):
-            here = node_between(led, low, high, share_at(place, low, high, value))
-            if here is None or here.t in (low.t, high.t):
-                break
-            gap = abs(float(here.v[place]) - value)
-            if gap <= off:
-                best, off = here, gap
-            if gap <= 2.0 * EPSILON * max(1.0, abs(value)):
-                break
-            if (here.v[place] < value) == (low.v[place] < value):
-                low = here
-            else:
-                high = here
-        if best is None and abs(float(high.v[place]) - value) <= off:
-            best = high
-        return None if best is None else self._polish(led, best, value)
+        here = sign_change(led, low, high, lambda node: float(node.v[place]) - value)
+        reached = abs(float(here.v[place]) - value) <= _REACHED * max(1.0, abs(value))
+        return self._polish(led, here, value) if reached else None
 
     def _polish(self, led: Parametrization, here: Node, value: float) -> Node:
         """The position with exactly the value, if the parameter determines it well enough."""

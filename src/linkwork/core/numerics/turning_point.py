@@ -23,7 +23,7 @@ import numpy as np
 
 from linkwork.core.foundation.arrays import Array, matrix_vector
 from linkwork.core.foundation.rounding import EPSILON, PROOF_SLACK, UNIT_ROUNDOFF
-from linkwork.core.foundation.statuses import CONVERGED, CircuitEnd
+from linkwork.core.foundation.statuses import CircuitEnd
 from linkwork.core.numerics.block_solver import Block, BlockSolver, Linearised
 from linkwork.core.numerics.branch_tracking import (
     BOLD,
@@ -42,7 +42,7 @@ from linkwork.core.numerics.curve_tracing import (
     CurveOptions,
     Leg,
     divide_step,
-    node_between,
+    sign_change,
     trace,
 )
 from linkwork.core.numerics.enclosed import Enclosed
@@ -52,7 +52,6 @@ from linkwork.core.numerics.local_parametrization import (
     Parametrizations,
     fastest_leader,
 )
-from linkwork.core.numerics.newton import sharp
 from linkwork.core.numerics.position_proof import expansions, prove, reach
 
 _ROOM = 4.0  # times the error of the rate: how far apart the ends of the interval are taken
@@ -473,7 +472,7 @@ def _refine_turn(
     """
     place, p = led.place(leads.parameter), leads.parameter
     edges = sorted((float(low.v[place]), float(high.v[place])))
-    here = _level(led, place, low, high)
+    here = sign_change(led, low, high, lambda node: float(node.first[place]), to_rounding=True)
     here = _sharpen(led, place, here) if prove else here
     proof = prove_dead_point(led, here.v, place) if prove else None
     v, direction = led.whole(here.v), led.whole(here.first)
@@ -494,44 +493,6 @@ def _refine_turn(
         after=where[1],
         node=here,
     )
-
-
-def _level(led: Parametrization, place: int, low: Node, high: Node) -> Node:
-    """The node between two at which a variable's rate is nearest to zero.
-
-    Newton-Raphson on the rate, kept inside the sign change and on the side of the branch on which
-    det J has the sign of both nodes; halving where a step comes onto another branch.
-    """
-    best = here = low if abs(low.first[place]) < abs(high.first[place]) else high
-    options = sharp(led.solver.options)
-    for _ in range(60):
-        step = _to_level(here, place)
-        if abs(step) <= 4.0 * EPSILON * max(1.0, abs(here.t)):
-            break
-        edges = sorted((low.t, high.t))
-        found = None
-        if edges[0] < here.t + step < edges[1]:
-            guess = predict(here, here.t + step)  # eq. (17)
-            guess[-1] = here.t + step
-            done = led.solver.solve(guess[None, :], options)
-            if done.status[0] == CONVERGED:
-                found = node_at(led.solver, led.path, float(guess[-1]), done.v[0])
-        if found is None or not np.array_equal(found.orientation, low.orientation):
-            # Newton has left the sign change or the branch: halve the interval
-            found = node_between(led, low, high, 0.5, to_rounding=True)
-            if found is None or not np.array_equal(found.orientation, low.orientation):
-                break
-            step = found.t - here.t
-        here = found
-        if here.first[place] * low.first[place] > 0.0:
-            low = here
-        else:
-            high = here
-        if abs(here.first[place]) < abs(best.first[place]):
-            best = here
-        elif abs(step) < 1e-9:
-            break  # to rounding
-    return best
 
 
 def _to_level(here: Node, place: int) -> float:
