@@ -54,14 +54,7 @@ class Term:
 
     def negated(self) -> Term:
         """The term with the opposite sign."""
-        return Term(
-            value=-self.value,
-            magnitude=self.magnitude,
-            sign=-self.sign,
-            turn=self.turn,
-            length=self.length,
-            phase=self.phase,
-        )
+        return replace(self, value=-self.value, sign=-self.sign)
 
     @classmethod
     def vector(

@@ -35,7 +35,7 @@ from linkwork.core.numerics.local_parametrization import Parametrization
 from linkwork.core.numerics.passage import Passage, pass_change_points
 from linkwork.core.numerics.position_proof import Proof, prove
 from linkwork.core.numerics.proved_rows import proved_rows
-from linkwork.core.numerics.system import SolvedRows
+from linkwork.core.numerics.system import Columns, SolvedRows
 from linkwork.core.numerics.turning_point import TurnAhead
 
 
@@ -220,8 +220,7 @@ def ends_passed(drive: Drive, end: BranchEnd, passage: Passage, certify: bool) -
 _CHUNK = 4096  # rows solved together: large enough to amortise NumPy calls, small enough for cache
 
 
-@dataclass(frozen=True, kw_only=True, eq=False)
-class Asked:
+class Asked(Columns):
     """Rows that are asked for: values ``t`` (B,) of the path, the inputs in internal units (B, p)
     and as they are named (B, p).
     """
@@ -229,14 +228,6 @@ class Asked:
     t: Array
     inputs: Array
     in_file_units: Array
-
-    def take(self, where: IndexArray) -> Asked:
-        """Some of them."""
-        return Asked(
-            t=self.t[where],
-            inputs=self.inputs[where],
-            in_file_units=self.in_file_units[where],
-        )
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -317,8 +308,7 @@ def _rows_of_laps(lap: Lap, asked: Asked, report: Report, certify: bool) -> Bran
     number = lap.number_of(asked.in_file_units[:, 0])
     nearer = lap.nearer(asked.in_file_units[:, 0], number)
     t = np.append(nearer * drive.unit, lap.end.t)  # the last row closes the lap
-    once = replace(
-        asked,
+    once = Asked(
         t=t,
         inputs=np.append(lap.intended(nearer), lap.end.t)[:, None],
         in_file_units=np.append(nearer, np.nan)[:, None],

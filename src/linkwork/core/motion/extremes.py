@@ -400,7 +400,7 @@ def _reached(
         bound[:, :n], holds = found.error_bound[:, :n], holds & found.holds
         apart = found.isolation_radius
         near = prove(solver, v, rounding, places).error_bound
-        first = solver.rates(v, rate, linear).first
+        first = solver.rates(v, rate).first
         # conversion of units, and the rate of inputs from one end of the table to the other
         lost = 2.0 * rounding + UNIT_ROUNDOFF * np.abs(half)
         span = half[:, lead] * _SLACK

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 
 import numpy as np
@@ -37,6 +37,13 @@ class Block:
     def places(self) -> list[int]:
         """``variables`` as a list."""
         return list(map(int, self.variables))
+
+    @cached_property
+    def alone(self) -> BlockSolver:
+        """The block by itself: its variables in its own order, the known ones as inputs."""
+        n, count = len(self.unknowns), len(self.variables)
+        own = replace(self, unknowns=np.arange(n), variables=np.arange(count))
+        return BlockSolver([own], n, count, self.system.variable_scale)
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -251,7 +258,6 @@ class BlockSolver:
         self,
         v: Array,
         input_rate: Array,
-        linear: Sequence[Linearised] | None = None,
         input_bend: Array | float = 0.0,
     ) -> SolvedRows:
         """First and second derivative of all variables, as the inputs move.
@@ -264,8 +270,6 @@ class BlockSolver:
             Converged positions.
         input_rate : (p,) or (B, p)
             u' of the inputs.
-        linear : list of Linearised, optional
-            ``linearise(v)``, if computed already.
         input_bend : (B, p), optional
             u''; by default the rate is constant.
 
@@ -274,7 +278,7 @@ class BlockSolver:
         SolvedRows
             ``v``, ``first``, ``second``, ``condition``, ``nearness``, ``orientation``.
         """
-        if linear is None and self.goes_singly(len(v)):
+        if self.goes_singly(len(v)):
             return self._rates_singly(v, input_rate, input_bend)
         count = len(v)
         first = np.zeros((count, self.variables))
@@ -284,37 +288,9 @@ class BlockSolver:
         condition, nearness = np.ones(count), np.ones(count)
         orientation = np.zeros((count, len(self.blocks)), dtype=np.int8)
         for k, block in enumerate(self.blocks):
-            n = len(block.unknowns)
-            if linear is None and block.record is not None:
-                own, near, orientation[:, k] = _recorded_rates(
-                    block, block.record, v, first, second
-                )
-                condition, nearness = np.maximum(condition, own), np.maximum(nearness, near)
-                continue
-            system, part = block.system, linearise_block(block, v) if linear is None else linear[k]
-            here = v[:, block.variables]
-            jacobian, inverse = part.jacobian, part.inverse
-            # earlier blocks have left their rates there: they are known motions for this one
-            known = block.variables[n:]
-            direction = np.empty_like(here)
-            direction[:, n:] = first[:, known]
-            with np.errstate(over="ignore", invalid="ignore"):  # rates may be of any size
-                # eq. (11)
-                x1 = -matrix_vector(inverse, matrix_vector(jacobian[:, :, n:], direction[:, n:]))
-                direction[:, :n] = x1
-                # eq. (12)
-                bend = system.second_directional_derivative(here, direction) + matrix_vector(
-                    jacobian[:, :, n:], second[:, known]
-                )
-                x2 = -matrix_vector(inverse, bend)
-            first[:, block.unknowns], second[:, block.unknowns] = x1, x2
-            own = _condition(system, jacobian[:, :, :n], inverse)
-            condition = np.maximum(condition, own)
-            # balancing the columns costs more than the rates themselves
-            if own.max(initial=0.0) > LARGE:
-                own = _nearness(own, system.equation_scale, jacobian[:, :, :n], inverse)
-            nearness = np.maximum(nearness, own)
-            orientation[:, k] = part.sign
+            rates = _array_rates if block.record is None else _recorded_rates
+            own, near, orientation[:, k] = rates(block, v, first, second)
+            condition, nearness = np.maximum(condition, own), np.maximum(nearness, near)
         return SolvedRows(
             v=v,
             first=first,
@@ -392,13 +368,43 @@ def _solve_recorded(
     )
 
 
-def _recorded_rates(
-    block: Block, record: Recorded, v: Array, first: Array, second: Array
+def _array_rates(
+    block: Block, v: Array, first: Array, second: Array
 ) -> tuple[Array, Array, StatusArray]:
-    """Rates of one block, in place: condition, nearness, signs of determinants."""
+    """Rates of one block, in place: condition, nearness, signs of determinants.
+
+    The blocks before have left their rates there: they are known motions for this one.
+    """
+    system, part, n = block.system, linearise_block(block, v), len(block.unknowns)
+    here, known = v[:, block.variables], block.variables[n:]
+    jacobian, inverse = part.jacobian, part.inverse
+    direction = np.empty_like(here)
+    direction[:, n:] = first[:, known]
+    with np.errstate(over="ignore", invalid="ignore"):  # rates may be of any size
+        # eq. (11)
+        x1 = -matrix_vector(inverse, matrix_vector(jacobian[:, :, n:], direction[:, n:]))
+        direction[:, :n] = x1
+        # eq. (12)
+        bend = system.second_directional_derivative(here, direction) + matrix_vector(
+            jacobian[:, :, n:], second[:, known]
+        )
+        x2 = -matrix_vector(inverse, bend)
+    first[:, block.unknowns], second[:, block.unknowns] = x1, x2
+    condition = nearness = _condition(system, jacobian[:, :, :n], inverse)
+    # balancing the columns costs more than the rates themselves
+    if condition.max(initial=0.0) > LARGE:
+        nearness = _nearness(condition, system.equation_scale, jacobian[:, :, :n], inverse)
+    return condition, nearness, part.sign
+
+
+def _recorded_rates(
+    block: Block, v: Array, first: Array, second: Array
+) -> tuple[Array, Array, StatusArray]:
+    """The same by the block's record."""
     n, known = len(block.unknowns), block.variables[len(block.unknowns) :]
     here = _columns(v[:, block.variables])
-    functions, count = record.of_arrays, len(v)
+    assert block.record is not None
+    functions, count = block.record.of_arrays, len(v)
     with np.errstate(all="ignore"):
         *found, own, determinant = functions.rates(
             *here, *_columns(first[:, known]), *_columns(second[:, known])
