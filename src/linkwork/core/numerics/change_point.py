@@ -134,7 +134,6 @@ class CrossingSystem:
 _DRIVEN = 2e-13  # relative: how well a crossing is located if earlier blocks cross too
 _SHARES = 17  # steps in which rates are moved across a kink
 _FAR = 1e-3  # ratio of a block's singular values from which on it is far from a singular position
-_SINGULAR = 1e-8  # ratio up to which it is singular, to rounding
 _UNFOLDED = 1e-13  # |β| beyond which the branches pass each other without touching
 
 
@@ -161,25 +160,13 @@ class ChangePoint:
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Crossing:
-    """A change point: parameter with bracket, position (N,), directions of both curves (2, N).
-
-    ``clear``: whether other blocks are far from singular positions, or at one, too.
-    """
+    """A change point: parameter with bracket, position (N,), directions of both curves (2, N)."""
 
     t: float
     v: Array
     directions: Array
     bracket: tuple[float, float]
     located: bool
-    clear: bool = False
-
-
-def is_clear(solver: BlockSolver, point: ChangePoint) -> bool:
-    """Whether no block becomes singular next to a change point but not there, and none before its
-    own in solving order.
-    """
-    near = {k: ratio for k, ratio in enumerate(_ratios(solver, point.v)) if ratio <= _FAR}
-    return min(near, default=-1) == point.block and max(near.values()) <= _SINGULAR
 
 
 def locate_change_point(
