@@ -45,12 +45,10 @@ class Fold:
     checked: bool
 
 
-_MOST_STEPS = 40
-_MOST_WRITTEN = 15  # with equations written again for each, which takes far longer
+_MOST_STEPS = 40  # of Newton-Raphson to a solution next to the fold
+_MOST_WRITTEN = 15  # steps to the fold, each with equations written again
 _LONGEST = 0.5  # weighted: a step is shortened as a whole
 _STILL = 1e-13
-_NEAR = 1e-6  # of a fold of the linear family: the last steps are those of the family itself
-_LINEAR = 1e-7  # relative difference of a family that is not linear; its derivatives have 1e-10
 _FURTHER = 1e-6  # of the parameter's size: how far beyond the fold a solution is sought
 _CLOSED = 1e-10
 _SOLVED = 1e-13
@@ -100,32 +98,6 @@ class _At:
         return step
 
 
-class _Linear:
-    """The system F + Δp F_p of a family, F at one p."""
-
-    def __init__(self, family: FoldFamily, system: SmallSystem, change: float) -> None:
-        self.system, self.ends = system, (family.low, family.high)
-        self.share = change / family.step
-        self.unknowns = system.unknowns
-        self.variable_scale, self.equation_scale = system.variable_scale, system.equation_scale
-
-    def residual_and_jacobian(self, v: Array) -> tuple[Array, Array]:
-        systems = (self.system, *self.ends)
-        (f, j), low, high = (system.residual_and_jacobian(v) for system in systems)
-        return f + self.share * (high[0] - low[0]), j + self.share * (high[1] - low[1])
-
-    def hessians(self, v: Array, weights: Array) -> Array:
-        here, low, high = (system.hessians(v, weights) for system in (self.system, *self.ends))
-        return here + self.share * (high - low)
-
-    def is_like(self, system: SmallSystem, v: Array) -> bool:
-        """Whether the residual of another system is the same at v (N,)."""
-        f, other = (
-            s.residual_and_jacobian(v[None, :])[0] / self.equation_scale for s in (self, system)
-        )
-        return bool(np.abs(f - other).max() <= _LINEAR * max(1.0, np.abs(other).max()))
-
-
 def locate_fold(family: FoldFamily, x: Array, p: float) -> Fold | None:
     """The value of p nearest to ``p``, to first order, at which solutions begin to exist.
 
@@ -153,31 +125,17 @@ def locate_fold(family: FoldFamily, x: Array, p: float) -> Fold | None:
             if abs(slope) < 1e-9:
                 return None
             p -= float(here.w @ here.f) / slope * family.size
-            found: tuple[Array, float] | None = (x, p)
-
-            def linear(p: float) -> _Linear:
-                return _Linear(family, here.system, p - begin)
-
-            # equations need not be written again for every p of a linear family
-            if linear(p).is_like(family.at(p), here.v):
-                found = _refine_fold(family, linear, (x, p), _MOST_STEPS, _NEAR)
-            found = found and _refine_fold(family, family.at, found, _MOST_WRITTEN, _STILL)
+            found = _refine_fold(family, (x, p))
             return None if found is None else _opening(family, begin, *found)
         except (np.linalg.LinAlgError, ValueError):
             return None
 
 
-def _refine_fold(
-    family: FoldFamily,
-    at: Callable[[float], SmallSystem],
-    begin: tuple[Array, float],
-    most: int,
-    still: float,
-) -> tuple[Array, float] | None:
-    """Newton-Raphson on the fold of the systems ``at`` p, until its steps are ``still``."""
+def _refine_fold(family: FoldFamily, begin: tuple[Array, float]) -> tuple[Array, float] | None:
+    """Newton-Raphson on the fold, until its steps are nearly zero."""
     x, p = begin
-    for _ in range(most):
-        here = _At(family, x, at(p))
+    for _ in range(_MOST_WRITTEN):
+        here = _At(family, x, family.at(p))
         step = here.correction()
         if not np.isfinite(step).all():
             return None
@@ -186,7 +144,7 @@ def _refine_fold(
         step *= min(1.0, _LONGEST / size) if size else 1.0
         x = x + step[:-1] * here.weights
         p += float(step[-1])
-        if size <= still * max(1.0, abs(p) / family.size):
+        if size <= _STILL * max(1.0, abs(p) / family.size):
             break
     else:
         if size > 1e-9:
