@@ -93,69 +93,40 @@ def block_form(pattern: Sequence[Sequence[int]], count: Sequence[int], unknowns:
 
 
 def _matching(columns: Sequence[Sequence[int]], unknowns: int) -> tuple[list[int], list[int]]:
-    """Hopcroft & Karp 1973: (row of each column, column of each row), -1 where unmatched."""
+    """A largest matching: (row of each column, column of each row), -1 where unmatched."""
     row_of = [-1] * unknowns
     column_of = [-1] * len(columns)
-    # rows with few unknowns first: the greedy matching leaves less to augment
+    # greedy start, rows with fewest entries first; nearly everything is matched by it
     for row in sorted(range(len(columns)), key=lambda r: len(columns[r])):
         for column in columns[row]:
             if row_of[column] < 0:
                 row_of[column], column_of[row] = row, column
                 break
-    while True:
-        level = _levels(columns, row_of, column_of)
-        if level is None:
-            return row_of, column_of
-        next_edge = [0] * len(columns)
-        for row in range(len(columns)):
-            if column_of[row] < 0:
-                _augment(row, columns, level, next_edge, row_of, column_of)
-
-
-def _levels(
-    columns: Sequence[Sequence[int]], row_of: list[int], column_of: list[int]
-) -> list[int] | None:
-    level = [0 if column < 0 else -1 for column in column_of]
-    queue = deque(row for row, k in enumerate(level) if k == 0)
-    reachable = False
-    while queue:
-        row = queue.popleft()
-        for column in columns[row]:
-            other = row_of[column]
-            if other < 0:
-                reachable = True
-            elif level[other] < 0:
-                level[other] = level[row] + 1
-                queue.append(other)
-    return level if reachable else None
+    for row in range(len(columns)):
+        if column_of[row] < 0:
+            _augment(row, columns, row_of, column_of)
+    return row_of, column_of
 
 
 def _augment(
-    root: int,
-    columns: Sequence[Sequence[int]],
-    level: list[int],
-    next_edge: list[int],
-    row_of: list[int],
-    column_of: list[int],
+    root: int, columns: Sequence[Sequence[int]], row_of: list[int], column_of: list[int]
 ) -> None:
-    path = [root]
-    while path:
-        row = path[-1]
-        if next_edge[row] == len(columns[row]):
-            level[row] = -1
-            path.pop()
-            continue
-        column = columns[row][next_edge[row]]
-        other = row_of[column]
-        if other < 0:
-            for r in reversed(path):
-                taken = columns[r][next_edge[r]]
-                row_of[taken], column_of[r] = r, taken
+    """Match one more row by the shortest alternating path to a free column, if there is one."""
+    came: dict[int, int] = {}  # the row from which a column was reached
+    queue = deque([root])
+    while queue:
+        row = queue.popleft()
+        for column in columns[row]:
+            if column in came:
+                continue
+            came[column] = row
+            if row_of[column] >= 0:
+                queue.append(row_of[column])
+                continue
+            while column >= 0:
+                row = came[column]
+                row_of[column], column, column_of[row] = row, column_of[row], column
             return
-        if level[other] == level[row] + 1 and next_edge[other] < len(columns[other]):
-            path.append(other)
-        else:
-            next_edge[row] += 1
 
 
 def _reach_from_rows(
