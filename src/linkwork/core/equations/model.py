@@ -52,6 +52,12 @@ class Term:
     length: str | None = None
     phase: tuple[tuple[str, float], ...] = ()
 
+    @property
+    def names(self) -> tuple[str, ...]:
+        """The symbols of its variables: the length first, then those of the phase."""
+        own = () if self.length is None else (self.length,)
+        return (*own, *(name for name, _ in self.phase))
+
     def negated(self) -> Term:
         """The term with the opposite sign."""
         return replace(self, value=-self.value, sign=-self.sign)
