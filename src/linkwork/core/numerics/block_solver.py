@@ -10,7 +10,6 @@ from functools import cached_property
 import numpy as np
 
 from linkwork.core.foundation.arrays import Array, IndexArray, StatusArray, inverses, matrix_vector
-from linkwork.core.foundation.rounding import FAR, SMALLEST_RATIO
 from linkwork.core.foundation.statuses import CONVERGED
 from linkwork.core.numerics.newton import NewtonOptions, Watch, newton
 from linkwork.core.numerics.system import Recorded, SolvedRows, System
@@ -110,39 +109,24 @@ class BlockSolver:
         count = len(v)
         status = np.full(count, CONVERGED, dtype=np.int8)
         failed = np.full(count, -1)
-        iterations = np.zeros(count, dtype=np.int64)
-        residual = np.zeros(count)
-        first = np.zeros(count)
-        contraction = np.zeros(count)
+        largest = {name: np.zeros(count) for name in ("residual", "first_step", "contraction")}
+        largest["iterations"] = np.zeros(count, dtype=np.int64)
         live = np.arange(count)
         for k, block in enumerate(self.blocks):
             here = v[live[:, None], block.variables]
-            watch, done = watches[k] if watches else None, None
-            if watch is None and block.record is not None:
-                done = _solve_recorded(block, block.record, here, options or self.options)
-            if done is None:
-                done = newton(block.system, here, options or self.options, watch)
+            watch = watches[k] if watches else None
+            done = newton(block.system, here, options or self.options, watch)
             v[live[:, None], block.unknowns] = done.v[:, : len(block.unknowns)]
             status[live] = done.status
-            iterations[live] = np.maximum(iterations[live], done.iterations)
-            residual[live] = np.maximum(residual[live], done.residual)
-            first[live] = np.maximum(first[live], done.first_step)
-            contraction[live] = np.maximum(contraction[live], done.contraction)
+            for name, column in largest.items():
+                column[live] = np.maximum(column[live], getattr(done, name))
             wrong = done.status != CONVERGED
             if wrong.any():
                 failed[live[wrong]] = k
                 live = live[~wrong]
                 if not len(live):
                     break
-        return SolvedRows(
-            v=v,
-            status=status,
-            failed_block=failed,
-            iterations=iterations,
-            residual=residual,
-            first_step=first,
-            contraction=contraction,
-        )
+        return SolvedRows(v=v, status=status, failed_block=failed, **largest)
 
     def solve_row(self, v: list[float], options: NewtonOptions) -> SingleSolution:
         """Newton-Raphson block by block from v (N,), in place, on floats.
@@ -208,14 +192,11 @@ class BlockSolver:
         """:meth:`solve` for a few rows."""
         rows = start.tolist()
         done = [self.solve_row(row, options) for row in rows]
+        names = ("failed_block", "iterations", "residual", "first_step", "contraction")
         return SolvedRows(
             v=np.array(rows).reshape(start.shape),
             status=np.array([x.status for x in done], dtype=np.int8),
-            failed_block=np.array([x.failed_block for x in done]),
-            iterations=np.array([x.iterations for x in done]),
-            residual=np.array([x.residual for x in done]),
-            first_step=np.array([x.first_step for x in done]),
-            contraction=np.array([x.contraction for x in done]),
+            **{name: np.array([getattr(x, name) for x in done]) for name in names},
         )
 
     def _rates_singly(self, v: Array, input_rate: Array, input_bend: Array | float) -> SolvedRows:
@@ -324,48 +305,6 @@ class SingleSolution:
 def _columns(v: Array) -> list[Array]:
     """The columns of v (B, N), each in one piece."""
     return list(np.ascontiguousarray(v.T))
-
-
-def _solve_recorded(
-    block: Block, record: Recorded, start: Array, options: NewtonOptions
-) -> SolvedRows | None:
-    """Newton-Raphson on a block's own variables (B, N); ``None`` where a row needs more care: a
-    shortened step, or one that fails.
-    """
-    correct, n = record.of_arrays.correct, len(block.unknowns)
-    values, count = _columns(start), len(start)
-    iterations, first, contraction = np.zeros(count, np.int64), np.zeros(count), np.zeros(count)
-    last: Array | None = None
-    with np.errstate(all="ignore"):
-        for k in range(options.max_steps + 1):
-            error, size, turn, *change = correct(*values)
-            done = error <= options.equation_tolerance  # eq. (8)
-            if last is not None:
-                done |= last <= options.solution_tolerance
-            if done.all():
-                break
-            going = ~done
-            lost = ~(error < np.inf) | going & (~(size < np.inf) | (turn > options.largest_turn))
-            if k == options.max_steps or lost.any() or (last is not None and (last > FAR).any()):
-                return None
-            if done.any():  # rows that are done stay
-                change, size = [np.where(done, 0.0, x) for x in change], np.where(done, 0.0, size)
-            values[:n] = [v - x for v, x in zip(values, change, strict=False)]  # eq. (6)
-            iterations += going
-            if last is None:
-                first = size
-            else:
-                ratio = np.where(size > SMALLEST_RATIO, size / last, 0.0)
-                contraction = np.maximum(contraction, ratio)
-            last = size
-    return SolvedRows(
-        v=np.stack(values, axis=1),
-        status=np.full(count, CONVERGED, dtype=np.int8),
-        iterations=iterations,
-        residual=error,
-        first_step=first,
-        contraction=contraction,
-    )
 
 
 def _array_rates(
