@@ -24,10 +24,10 @@ from linkwork.core.numerics.branch_tracking import InputPath, Node, Track, rows_
 from linkwork.core.numerics.path_proof import prove_path
 from linkwork.core.numerics.position_proof import rounding_of_inputs
 from linkwork.core.numerics.system import SolvedRows
-from linkwork.core.results import quantities
 from linkwork.core.results.failure import Failure
 from linkwork.core.results.position import Certificate, NewtonTrail, Position
 from linkwork.core.results.quantities.definition import Group
+from linkwork.core.results.quantities.registry import row_quantity
 from linkwork.core.results.quantity import Kind
 from linkwork.core.results.series import Series
 
@@ -139,7 +139,7 @@ class QuantityValues(ABC):
                 if symbol in used:
                     found[symbol] = self._coordinate(f"{point}.{axis}")
         for symbol in used - set(found):
-            if quantities.row_quantity(symbol) is not None:
+            if row_quantity(symbol) is not None:
                 asked = self.model.quantities.find(symbol)
                 jet, scale = asked.jet(self), self.model.units.scale(asked.own.kind)
                 found[symbol] = Jet(jet.v, jet.d1 / scale, jet.d2 / scale)
