@@ -217,9 +217,6 @@ def ends_passed(drive: Drive, end: BranchEnd, passage: Passage, certify: bool) -
 # The rows of a table that lie on one branch: followed, solved, proved.
 
 
-_CHUNK = 4096  # rows solved together: large enough to amortise NumPy calls, small enough for cache
-
-
 class Asked(Columns):
     """Rows that are asked for: values ``t`` (B,) of the path, the inputs in internal units (B, p)
     and as they are named (B, p).
@@ -444,13 +441,8 @@ class _RowSolver:
             if proved is not None:
                 self.report.proved(1.0)
                 return self._placed_in(blank, there, proved), True
-        pieces: list[SolvedRows] = []
-        # chunks keep the interpolation of long tables in the cache, and progress moves
-        for begin in range(0, len(there), _CHUNK):
-            chunk = there[begin : begin + _CHUNK]
-            pieces.append(rows_on_track(solver, path, track, self.placed[chunk]))
-            self.report.solved((begin + len(chunk)) / len(there))
-        rows, to_ends = SolvedRows.concatenate(pieces), False
+        rows, to_ends = rows_on_track(solver, path, track, self.placed[there]), False
+        self.report.solved(1.0)
         if self.certify:
             asked = self.asked.inputs[there]
             rows, to_ends = prove_rows(solver, path, track, rows, asked, self.report.proved)
