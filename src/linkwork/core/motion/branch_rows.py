@@ -445,7 +445,8 @@ class _RowSolver:
         self.report.solved(1.0)
         if self.certify:
             asked = self.asked.inputs[there]
-            rows, to_ends = prove_rows(solver, path, track, rows, asked, self.report.proved)
+            rows, to_ends = prove_rows(solver, path, track, rows, asked)
+            self.report.proved(1.0)
         return self._placed_in(blank, there, rows), to_ends
 
     def _placed_in(self, blank: SolvedRows, there: IndexArray, rows: SolvedRows) -> SolvedRows:

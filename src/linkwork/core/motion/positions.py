@@ -290,7 +290,6 @@ def prove_rows(
     track: Track,
     rows: SolvedRows,
     asked: Array,
-    progress: Callable[[float], None] | None = None,
 ) -> tuple[SolvedRows, bool]:
     """Prove rows solved along a track for the inputs ``asked`` (B, p).
 
@@ -310,7 +309,7 @@ def prove_rows(
     nodes = nodes_around(track, rows.t[found])
     points, place = _path_points(solver, [track.nodes[k] for k in nodes], rows, asked, found)
     anchor = int(place[nodes.index(track.start)])
-    proof = prove_path(solver, path, points, anchor=anchor, progress=progress)
+    proof = prove_path(solver, path, points, anchor=anchor)
     joined = proof.connected_to(anchor)
     mine = place[len(nodes) :]
     position = proof.position.holds[mine]

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from itertools import pairwise
 
@@ -246,7 +246,6 @@ def _between(
 
 _MOST = 30_000  # positions solved in between for the proof of one path
 _MOST_EACH = 8  # and this many more for each of its own positions
-_PIECE = 1024  # positions proved together: arrays that fit the cache
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -291,7 +290,6 @@ def prove_path(
     anchor: int | None = None,
     most: int | None = None,
     exact: bool = False,
-    progress: Callable[[float], None] | None = None,
 ) -> ProvenPath:
     """Prove every position and every step between neighbours.
 
@@ -307,8 +305,6 @@ def prove_path(
         number that grows with the path's own.
     exact : bool
         Take residuals that are rounded once: slower, for places where branches nearly cross.
-    progress : callable, optional
-        Called with the finished fraction.
 
     Notes
     -----
@@ -322,29 +318,8 @@ def prove_path(
             return few
     prover = Prover(solver, path, exact, fitted=exact or not solver.is_recorded)
     allowance = Allowance(_MOST + _MOST_EACH * count if most is None else most)
-    begins = list(range(0, max(count - 1, 1), _PIECE))
-    if anchor is not None:
-        # near the anchor first: beyond a step that is not proved no other one is of use
-        begins.sort(key=lambda begin: abs(begin + _PIECE // 2 - anchor))
-    found: dict[int, ProvenPath] = {}
-    for k, begin in enumerate(begins, start=1):
-        part = points.take(slice(begin, begin + _PIECE + 1))
-        inside = None if anchor is None else min(max(anchor - begin, 0), len(part.t) - 1)
-        strand = Strand(begin=0, end=len(part.t), anchor=inside)
-        found[begin] = _piece(prover, part, [strand], allowance)
-        if progress is not None:
-            progress(k / len(begins))
-    pieces = [found[begin] for begin in sorted(begins)]
-    if len(pieces) == 1:
-        return pieces[0]
-    # neighbouring pieces share one position
-    proofs = [piece.position.take(slice(1, None)) for piece in pieces[1:]]
-    return ProvenPath(
-        position=Proof.concatenate([pieces[0].position, *proofs]),
-        connected=np.concatenate([piece.connected for piece in pieces]),
-        pieces=np.concatenate([piece.pieces for piece in pieces]),
-        given_up=np.concatenate([piece.given_up for piece in pieces]),
-    )
+    strand = Strand(begin=0, end=count, anchor=anchor)
+    return _prove_strands(prover, points, [strand], allowance)
 
 
 def _prove_few(solver: BlockSolver, path: InputPath, points: SolvedRows) -> ProvenPath | None:
@@ -391,42 +366,26 @@ def prove_paths(
     fitted = not solver.is_recorded
     prover, allowance = Prover(solver, path, False, fitted=fitted), Allowance(most)
     prover = prover if halvings is None else replace(prover, halvings=halvings)
-    found: list[ProvenPath] = []
-    for some in _groups([len(points.t) for points in paths]):
-        strands, begin = [], 0
-        for k in some:
-            end = begin + len(paths[k].t)
-            strands.append(Strand(begin=begin, end=end, anchor=begin + anchors[k]))
-            begin = end
-        points = SolvedRows.concatenate([paths[k] for k in some])
-        whole = _piece(prover, points, strands, allowance)
-        for strand in strands:
-            steps = slice(strand.begin, strand.end - 1)
-            found.append(
-                ProvenPath(
-                    position=whole.position.take(slice(strand.begin, strand.end)),
-                    connected=whole.connected[steps],
-                    pieces=whole.pieces[steps],
-                    given_up=whole.given_up[steps],
-                )
-            )
-    return found
+    if not paths:
+        return []
+    ends = np.cumsum([len(points.t) for points in paths]).tolist()
+    strands = [
+        Strand(begin=begin, end=end, anchor=begin + anchor)
+        for begin, end, anchor in zip([0, *ends], ends, anchors, strict=False)
+    ]
+    whole = _prove_strands(prover, SolvedRows.concatenate(paths), strands, allowance)
+    return [
+        ProvenPath(
+            position=whole.position.take(slice(strand.begin, strand.end)),
+            connected=whole.connected[strand.begin : strand.end - 1],
+            pieces=whole.pieces[strand.begin : strand.end - 1],
+            given_up=whole.given_up[strand.begin : strand.end - 1],
+        )
+        for strand in strands
+    ]
 
 
-def _groups(sizes: Sequence[int]) -> list[list[int]]:
-    """Consecutive numbers in groups whose sizes fit the cache."""
-    found: list[list[int]] = []
-    room = 0
-    for k, size in enumerate(sizes):
-        if size > room:
-            found.append([])
-            room = _PIECE
-        found[-1].append(k)
-        room -= size
-    return found
-
-
-def _piece(
+def _prove_strands(
     prover: Prover,
     points: SolvedRows,
     strands: Sequence[Strand],
