@@ -7,9 +7,10 @@ graph (Duff, Erisman & Reid, Direct Methods for Sparse Matrices, ch. 6; Dulmage 
 from __future__ import annotations
 
 from collections import deque
-from collections.abc import Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from functools import cached_property
+from itertools import count as counter
 
 import numpy as np
 
@@ -63,8 +64,10 @@ def block_form(pattern: Sequence[Sequence[int]], count: Sequence[int], unknowns:
     for row, used in enumerate(columns):
         for column in used:
             users[column].append(row)
-    over_rows, over_columns = _reach_from_rows(columns, row_of, column_of)
-    under_columns = _reach_from_columns(users, row_of, column_of)
+    unmatched = (row for row, column in enumerate(column_of) if column < 0)
+    over_rows, over_columns = _reach(unmatched, columns, row_of)
+    unmatched = (column for column, row in enumerate(row_of) if row < 0)
+    under_columns, _ = _reach(unmatched, users, column_of)
     graph: list[set[int]] = [set() for _ in pattern]
     for row, used in enumerate(columns):
         for column in used:
@@ -129,80 +132,60 @@ def _augment(
             return
 
 
-def _reach_from_rows(
-    columns: Sequence[Sequence[int]], row_of: list[int], column_of: list[int]
+def _reach(
+    begin: Iterable[int], neighbours: Sequence[Sequence[int]], partner: Sequence[int]
 ) -> tuple[set[int], set[int]]:
-    """Rows and columns on alternating paths from unmatched rows: the overdetermined part."""
-    rows = {row for row, column in enumerate(column_of) if column < 0}
-    found: set[int] = set()
-    queue = deque(rows)
-    while queue:
-        for column in columns[queue.popleft()]:
-            if column in found:
-                continue
-            found.add(column)
-            other = row_of[column]
-            if other >= 0 and other not in rows:
-                rows.add(other)
-                queue.append(other)
-    return rows, found
+    """What alternating paths reach: on the side of their beginnings, and on the other side.
 
-
-def _reach_from_columns(
-    users: Sequence[Sequence[int]], row_of: list[int], column_of: list[int]
-) -> set[int]:
-    """Columns on alternating paths from unmatched columns: the underdetermined part."""
-    found = {column for column, row in enumerate(row_of) if row < 0}
+    ``partner``: the matched one of each on the other side, -1 where there is none.
+    """
+    found = set(begin)
+    across: set[int] = set()
     queue = deque(found)
     while queue:
-        for row in users[queue.popleft()]:
-            other = column_of[row]
-            if other >= 0 and other not in found:
-                found.add(other)
-                queue.append(other)
-    return found
+        for there in neighbours[queue.popleft()]:
+            back = partner[there]
+            if there not in across and back >= 0 and back not in found:
+                found.add(back)
+                queue.append(back)
+            across.add(there)
+    return found, across
 
 
 def _strong_components(graph: Sequence[set[int]]) -> list[list[int]]:
     """Tarjan 1972, without recursion; a component comes after those it depends on."""
-    index = [-1] * len(graph)
-    low = [0] * len(graph)
-    on_stack = [False] * len(graph)
+    unseen, finished = -1, len(graph)
+    index = [unseen] * len(graph)
+    low = [unseen] * len(graph)
     stack: list[int] = []
+    work: list[tuple[int, Iterator[int]]] = []
     found: list[list[int]] = []
-    counter = 0
+    numbers = counter()
+
+    def enter(node: int) -> None:
+        index[node] = low[node] = next(numbers)
+        stack.append(node)
+        work.append((node, iter(sorted(graph[node]))))
+
     for root in range(len(graph)):
-        if index[root] >= 0:
-            continue
-        work = [(root, iter(sorted(graph[root])))]
-        index[root] = low[root] = counter
-        counter += 1
-        stack.append(root)
-        on_stack[root] = True
+        if index[root] == unseen:
+            enter(root)
         while work:
             node, successors = work[-1]
             for following in successors:
-                if index[following] < 0:
-                    index[following] = low[following] = counter
-                    counter += 1
-                    stack.append(following)
-                    on_stack[following] = True
-                    work.append((following, iter(sorted(graph[following]))))
+                if index[following] == unseen:
+                    enter(following)
                     break
-                if on_stack[following]:
-                    low[node] = min(low[node], index[following])
+                low[node] = min(low[node], index[following])
             else:
                 work.pop()
                 if work:
                     low[work[-1][0]] = min(low[work[-1][0]], low[node])
                 if low[node] == index[node]:
                     component: list[int] = []
-                    while True:
-                        member = stack.pop()
-                        on_stack[member] = False
-                        component.append(member)
-                        if member == node:
-                            break
+                    while node not in component[-1:]:
+                        component.append(stack.pop())
+                        index[component[-1]] = finished
                     found.append(component)
     return found
 
