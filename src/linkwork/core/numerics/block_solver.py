@@ -6,6 +6,7 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
+from typing import Any
 
 import numpy as np
 
@@ -109,7 +110,8 @@ class BlockSolver:
         count = len(v)
         status = np.full(count, CONVERGED, dtype=np.int8)
         failed = np.full(count, -1)
-        largest = {name: np.zeros(count) for name in ("residual", "first_step", "contraction")}
+        names = ("residual", "first_step", "contraction")
+        largest: dict[str, Any] = {name: np.zeros(count) for name in names}
         largest["iterations"] = np.zeros(count, dtype=np.int64)
         live = np.arange(count)
         for k, block in enumerate(self.blocks):
