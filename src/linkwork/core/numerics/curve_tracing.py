@@ -33,7 +33,6 @@ from linkwork.core.numerics.local_parametrization import (
 from linkwork.core.numerics.newton import sharp
 
 _STILL = 8.0 * EPSILON  # relative: a variable that moves less over a step rests, to rounding
-_KEPT = 256  # divided steps of one leader
 _DIVISIONS = 24  # halvings of a step in which a variable turns back several times
 _SAFE = 4.0  # the error of a cubic is at most this many times that halfway
 _SEARCH = 80  # positions solved to find a sign change
@@ -117,23 +116,15 @@ def sign_change(
     return best
 
 
-def divide_step(led: Parametrization, place: int, a: Node, b: Node) -> list[Node]:
+def divide_step(
+    led: Parametrization, place: int, a: Node, b: Node, depth: int = _DIVISIONS
+) -> list[Node]:
     """A step, divided so finely that a variable turns back at most once in each piece.
 
     The cubic through the variable's rates and their derivatives at both ends is compared with the
     rate halfway. The step is halved until that cubic, within its error, is zero at most once;
     reversals within the rounding of the rate are not seen.
     """
-    # the search for dead points divides the steps that the search for the closing point has divided
-    key = place, id(a), id(b)
-    if key not in led.divided_steps:
-        if len(led.divided_steps) >= _KEPT:
-            led.divided_steps.clear()
-        led.divided_steps[key] = _divide(led, place, a, b, _DIVISIONS)
-    return led.divided_steps[key]
-
-
-def _divide(led: Parametrization, place: int, a: Node, b: Node, depth: int) -> list[Node]:
     h = b.t - a.t
     ends = (a.first[place], a.second[place], b.first[place], b.second[place])
     low, high = reach(h, *ends)
@@ -148,8 +139,8 @@ def _divide(led: Parametrization, place: int, a: Node, b: Node, depth: int) -> l
     off = abs(float(middle.first[place]) - float(hermite(0.5, h, *ends)))
     if _zero_once(_SAFE * off + 8.0 * EPSILON * size, h, *ends):
         return [a, b]
-    left = _divide(led, place, a, middle, depth - 1)
-    return [*left, *_divide(led, place, middle, b, depth - 1)[1:]]
+    left = divide_step(led, place, a, middle, depth - 1)
+    return [*left, *divide_step(led, place, middle, b, depth - 1)[1:]]
 
 
 def reach(h: float, v0: float, d0: float, v1: float, d1: float) -> tuple[float, float]:
