@@ -29,7 +29,7 @@ from linkwork.core.record.closure import (
     weighted_norm,
 )
 from linkwork.core.record.python_text import ARRAYS, FLOATS, Form, KeptCode, Statements, local_name
-from linkwork.core.record.recorder import Recorder, Value
+from linkwork.core.record.recorder import Op, Recorder, Value
 from linkwork.core.table.loop_table import LoopTable
 from linkwork.core.table.rows import LawRow
 
@@ -182,8 +182,9 @@ class ShapeWriter:
     def solve(self) -> str:
         """Newton-Raphson, of floats."""
         rec, first, second = self._correction()
-        text = Statements(rec, self._form, [first, second])
-        evidence, correct = text.stage(0), text.stage(1)
+        fixed = _unmoved(rec, {f"v{k}" for k in range(self.n)}, [*first, *second])
+        text = Statements(rec, self._form, [fixed, first, second])
+        before, evidence, correct = (text.stage(k) for k in range(3))
         error, (size, turn, *change) = text.text(first[0]), map(text.text, second)
         unknowns = self.variables[: self.n]
         loop = [
@@ -223,6 +224,7 @@ class ShapeWriter:
             "error = last = inf",
             "first = contraction = 0.0",
             "try:",
+            *(f"    {line}" for line in before),
             "    while True:",
             *(f"        {line}" for line in loop),
             "except ZeroDivisionError:",
@@ -374,6 +376,27 @@ def _radii(closure: _Numbers, proof: BlockProof, kind: str) -> list[int]:
 def _listed(names: Iterable[str]) -> str:
     """Names as a tuple."""
     return "".join(f"{name}, " for name in names).removesuffix(" ") or "()"
+
+
+def _unmoved(rec: Recorder, moving: set[str], values: Sequence[int]) -> list[int]:
+    """The computed numbers that no moving input changes, but others use."""
+    changed: list[bool] = []
+    for op, sources, payload in zip(rec.ops, rec.arguments, rec.payload, strict=True):
+        changed.append(payload in moving if op is Op.INPUT else any(changed[a] for a in sources))
+    plain = (Op.INPUT, Op.CONSTANT)
+    found: dict[int, None] = {}
+    seen, stack = set[int](), list(values)
+    while stack:
+        k = stack.pop()
+        if k in seen:
+            continue
+        seen.add(k)
+        if not changed[k]:
+            if rec.ops[k] not in plain:
+                found[k] = None
+            continue
+        stack += rec.arguments[rec.arguments[k][0]] if rec.ops[k] is Op.COS else rec.arguments[k]
+    return sorted(found)
 
 
 class ShapeFunctions:
