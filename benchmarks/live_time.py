@@ -25,7 +25,7 @@ from benchmarks.processes import processor_time
 from linkwork.app.live.cycle import MotionPicture
 from linkwork.app.live.messages import encoded
 from linkwork.app.live.result_events import motion_found
-from linkwork.core.motion.sweeping import approximate_sweep
+from linkwork.core.motion.sweeping import sweep
 
 __all__ = ["measure"]
 
@@ -102,14 +102,14 @@ def measure(repeats: int = 7) -> bool:
 def _stages(repeats: int = 60) -> None:
     """Processor time of the stages of a drag, median [ms] and as a ratio to the solving."""
     text = lw.example_text("jansen-leg")
-    motion, picture = lw.loads(text).sweep(), MotionPicture()
+    picture = MotionPicture()
     took: dict[str, list[float]] = {}
     for k in range(repeats):
         changed = text.replace('"O A" = 15', f'"O A" = {15 + 0.01 * (k % 50)}')
         times = [time.process_time()]
         mechanism = lw.loads(changed)
         times.append(time.process_time())
-        motion = approximate_sweep(mechanism.model, motion)
+        motion = sweep(mechanism.model, certify=False, explained=False)
         times.append(time.process_time())
         page = picture.page(motion, brief=True)
         times.append(time.process_time())

@@ -119,7 +119,7 @@ def _true_step(
             continue
         verdict.counts["steps proved at once"] += 1
         way = branch[: last + 1]
-        if not (np.abs(way - v)[:, :n] <= around.error_bound[0] + 1e-9).all():
+        if not (np.abs(way - v)[:, :n] <= around.error_bound[0, :n] + 1e-9).all():
             false.append("the branch leaves the radius of an unknown within a proved step")
         for here in way[::100]:
             others = _others(rng, table, here)

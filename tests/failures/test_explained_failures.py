@@ -386,5 +386,5 @@ def test_equations_are_written_a_few_times_for_every_length(
     monkeypatch.setattr(remedies, "model_with", counted)
     position = lw.example("double-four-bar").with_dimensions(b3=480).solve()
     assert position.status is lw.Status.CANNOT_CLOSE
-    # near the present value, at the first estimate, and on either side of the fold
-    assert max(Counter(asked).values()) <= 8
+    # near the present value, at the first estimate, 15 steps to the fold, and beyond it
+    assert max(Counter(asked).values()) <= 19

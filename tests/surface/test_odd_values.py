@@ -13,7 +13,6 @@ import linkwork as lw
 from linkwork import families as batch
 from linkwork.core.drawing.pose import Pose
 from linkwork.core.motion.iterating import moving_loops, pulled_guess
-from linkwork.core.motion.sweeping import approximate_sweep
 from linkwork.families.study import summary_of
 from tests.failures.test_words_that_help import BAR as PARTS
 
@@ -44,7 +43,6 @@ PRESS = lw.example("crank-press")
         ),
         (lambda: BAR.driven_by(x=3), 'there is no field "x" (fields: '),
         (lambda: BAR.changed(joint=3), 'there is no field "joint" (fields: '),
-        (lambda: approximate_sweep(BAR.model, 3), "the neighbour must be a Motion, got 3"),  # type: ignore[arg-type]
         (lambda: moving_loops(BAR.model, {}), "the cycle must be a Motion, got {}"),  # type: ignore[arg-type]
         (lambda: PRESS.forces(motion="a"), "the motion must be a Motion, got 'a'"),  # type: ignore[arg-type]
         (

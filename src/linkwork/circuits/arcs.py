@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -157,13 +156,8 @@ class Walks:
         self._turned: dict[int, Array] = {}
         self._settled = not certify
 
-    def walk(
-        self, start: Array, heading: float | Array, known: Sequence[Crossing] = ()
-    ) -> TracedCurve:
-        """The curve from a position (N,) on; its proof may still have to be made.
-
-        ``known``: change points at which it may end, located again if dead points are proved.
-        """
+    def walk(self, start: Array, heading: float | Array) -> TracedCurve:
+        """The curve from a position (N,) on; its proof may still have to be made."""
         key = start.tobytes(), np.asarray(heading, dtype=float).tobytes()
         forwards = isinstance(heading, float) and heading > 0.0
         if key not in self._known and self.certify and forwards:
@@ -172,9 +166,8 @@ class Walks:
                 self._known[key] = turned
                 self._turned[id(turned.curve)] = start
         if key not in self._known:
-            ends = None if self.prove_turns else known
             found = trace_boldly(
-                self.leads, start, heading, self.certify, prove_turns=self.prove_turns, known=ends
+                self.leads, start, heading, self.certify, prove_turns=self.prove_turns
             )
             if self.certify and found.curve.legs:
                 if self._settled:
@@ -373,7 +366,7 @@ class Explorer:
 
     def _walk(self, start: Array, heading: float | Array) -> tuple[TracedCurve, int | None]:
         """A walk and the number of the crossing it ends at, if it does."""
-        walk = self.walks.walk(start, heading, self.crossings)
+        walk = self.walks.walk(start, heading)
         found = walk.curve.crossing
         if found is None or not walk.curve.legs:
             return walk, None

@@ -423,7 +423,7 @@ class _Assembly:
         """Take over a block's positions v with their proof, in a new order."""
         before = _rows_of(self.proof, rows)
         radii = prove_block(block, part, v, before.error_bound)
-        error_bound = before.error_bound
+        error_bound = before.error_bound.copy()
         # later blocks cannot use an infinite bound; the missing proof is kept in holds
         error_bound[:, block.unknowns] = np.where(
             np.isfinite(radii.error_bound), radii.error_bound, 0.0

@@ -21,7 +21,6 @@ from linkwork.core.numerics.branch_tracking import (
     rows_of_nodes,
     rows_on_track,
 )
-from linkwork.core.numerics.change_point import Crossing
 from linkwork.core.numerics.curve_proof import ProvenCurve, prove_curve, same_solution
 from linkwork.core.numerics.curve_tracing import Curve, CurveOptions, Leg, sign_change, trace
 from linkwork.core.numerics.local_parametrization import (
@@ -69,15 +68,13 @@ def trace_boldly(
     certify: bool,
     *,
     prove_turns: bool = True,
-    known: Sequence[Crossing] | None = None,
 ) -> TracedCurve:
     """A curve whose proof is still to be made; with careful steps if there will be none.
 
-    ``prove_turns``: whether to prove where its dead points are. ``known``: change points that it
-    may end at.
+    ``prove_turns``: whether to prove where its dead points are.
     """
     bold = certify and _provable(leads)
-    curve = trace(leads, start, heading, CurveOptions() if bold else _CAREFUL, known)
+    curve = trace(leads, start, heading, CurveOptions() if bold else _CAREFUL)
     turns = turning_points(leads, curve, prove=prove_turns)
     return TracedCurve(curve=curve, proof=None, turns=tuple(turns))
 

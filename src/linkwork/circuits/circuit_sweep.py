@@ -155,4 +155,4 @@ def _rows_on_branch(branch: CurveBranch, asked: Asked, parameter: int, free: boo
         order = order[keep]
     in_file_units = asked.in_file_units[row[order]]
     inputs = asked.inputs[row[order]]
-    return replace(asked, t=t[order], inputs=inputs, in_file_units=in_file_units)
+    return asked.with_columns(t=t[order], inputs=inputs, in_file_units=in_file_units)

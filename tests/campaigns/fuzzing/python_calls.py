@@ -57,7 +57,7 @@ _FUNCTIONS: tuple[Callable[..., Any], ...] = (
 _METHODS = (
     "solve", "sweep", "configurations", "circuits", "family", "with_dimensions", "changed",
     "inversion",
-    "driven_by", "iterates", "nearest_assembly", "pulled_guess", "approximate_sweep",
+    "driven_by", "iterates", "nearest_assembly", "pulled_guess",
     "moving_loops", "scene", "forces", "link",
 )  # fmt: skip
 _MOTION = ("__getitem__", "trace", "value", "series", "place", "quantity", "table")

@@ -28,7 +28,7 @@ from linkwork.core.foundation.errors import InputError
 from linkwork.core.foundation.statuses import Status
 from linkwork.core.mechanism.dimensions import LARGEST
 from linkwork.core.motion.iterating import moving_loops
-from linkwork.core.motion.sweeping import approximate_sweep
+from linkwork.core.motion.sweeping import sweep
 from linkwork.core.results.motion import Motion
 
 
@@ -279,7 +279,7 @@ class Cycle:
 
     def _swept(self, mechanism: Mechanism, live: bool) -> tuple[Motion, str]:
         if live:
-            return approximate_sweep(mechanism.model, self.motion), ""
+            return sweep(mechanism.model, certify=False, explained=False), ""
         description = mechanism.description
         rows = [description.rows(which) for which in description.inputs]
         count = max(map(len, rows))

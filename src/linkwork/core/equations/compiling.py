@@ -352,7 +352,7 @@ class LeaderSolvers:
 
     def __init__(self, table: LoopTable, solver: BlockSolver | None = None) -> None:
         self.table, self._solver = table, solver
-        self._splitter, self._pattern = TableSplitter(table), table.pattern()
+        self._splitter = TableSplitter(table)
         self._found: dict[int, tuple[BlockSolver, IndexArray] | None] = {}
         if solver is not None:
             self._found[table.unknowns] = solver, np.arange(table.variables)
@@ -369,40 +369,39 @@ class LeaderSolvers:
         return self._found[lead]
 
     def _make(self, lead: int) -> tuple[BlockSolver, IndexArray] | None:
-        table = self.table
-        others = [k for k in range(table.variables) if k != lead]
-        place = {old: new for new, old in enumerate([*others, lead])}
-        loops = table.loops.rows
-        pattern = [[place[k] for k in used if k != lead] for used in self._pattern]
-        rows = [2] * loops + [1] * (len(pattern) - loops)
-        form = block_form(pattern, rows, len(others))
-        if not form.square:
-            return None
-        blocks = []
-        for members, unknowns in form.blocks:
-            mine = [others[k] for k in unknowns]
-            part, known = self._splitter.part(list(members), mine)
-            variables = [place[k] for k in (*mine, *known)]
-            blocks.append(
-                Block(
-                    system=part,
-                    equations=members,
-                    unknowns=np.array(unknowns, dtype=np.intp),
-                    variables=np.array(variables, dtype=np.intp),
-                    record=record_of(part),
-                )
+        order = [*(k for k in range(self.table.variables) if k != lead), lead]
+        _, solver = _solver_of(self.table, order, len(order) - 1, self._splitter)
+        return None if solver is None else (solver, np.array(order, dtype=np.intp))
+
+
+def _solver_of(
+    table: LoopTable, order: Sequence[int], unknowns: int, splitter: TableSplitter
+) -> tuple[BlockForm, BlockSolver | None]:
+    """The block form of a table, and a solver unless the blocks are not square.
+
+    ``order`` (N,): the table's variables in the solver's order, the first ones unknown.
+    """
+    place = {old: new for new, old in enumerate(order)}
+    pattern = [[place[k] for k in used if place[k] < unknowns] for used in table.pattern()]
+    loops = table.loops.rows
+    form = block_form(pattern, [2] * loops + [1] * (len(pattern) - loops), unknowns)
+    if not form.square:
+        return form, None
+    blocks = []
+    for members, numbers in form.blocks:
+        mine = [order[k] for k in numbers]
+        part, known = splitter.part(list(members), mine)
+        blocks.append(
+            Block(
+                system=part,
+                equations=members,
+                unknowns=np.array(numbers, dtype=np.intp),
+                variables=np.array([place[k] for k in (*mine, *known)], dtype=np.intp),
+                record=record_of(part),
             )
-        order: IndexArray = np.array([*others, lead], dtype=np.intp)
-        scale = table.variable_scale[order]
-        return BlockSolver(blocks, len(others), table.variables, scale), order
-
-
-# ----------------------------------------------------------------------
-# The closure equations with another variable as parameter (local parametrization).
-#
-# Near a dead point the input is no suitable parameter, but a fast-moving link is. The equations do
-# not change: the input becomes an unknown, the parameter becomes known, and the block-triangular
-# form is recomputed.
+        )
+    scale = table.variable_scale[np.array(order, dtype=np.intp)]
+    return form, BlockSolver(blocks, unknowns, table.variables, scale)
 
 
 class ParametrizedTable:
@@ -451,24 +450,17 @@ class ParametrizedTable:
         slope = table.jacobian(v) * table.variable_scale / table.equation_scale[:, None]
         return np.delete(slope, self.parameter, axis=2)
 
-    def _bend(self, v: Array, directions: Array) -> Array:
-        """D²F[d, d] at a position v (N,) for directions (B, N), (B, m)."""
-        places = np.tile(v, (len(directions), 1))
-        return self.table.second_directional_derivative(places, directions)
-
     def weakening(self, v: Array, rates: Array) -> float:
         """The rate of the smallest singular value σ of the scaled Jacobian at a position v (N,).
 
         dσ = uᵀ dJ w with the singular vectors u and w (Golub & Van Loan, Matrix Computations, 8.6),
-        and dJ w is the mixed second derivative of the equations along w and ``rates`` (N,).
+        and uᵀ dJ w is that sum of second derivatives of the equations along w and ``rates`` (N,).
         """
         table = self.table
         left, _, right = np.linalg.svd(self.jacobian(v[None, :])[0])
         w = np.insert(right[-1], self.parameter, 0.0) * table.variable_scale
-        both = np.stack([rates + w, rates - w])
-        # eq. (5)
-        change = 0.25 * np.subtract(*self._bend(v, both))
-        return float(left[:, -1] @ (change / table.equation_scale))  # eq. (16)
+        bend = table.hessians(v, (left[:, -1] / table.equation_scale)[None, :])[0]
+        return float(rates @ bend @ w)  # eq. (16)
 
 
 def _lock_inputs(table: LoopTable, path: InputPath, parameter: int) -> LoopTable:
@@ -621,26 +613,9 @@ def compile_equations(equations: LoopEquations, where: str) -> Compiled:
     """
     index = {v.symbol: k for k, v in enumerate(equations.variables)}
     table = _table(equations, index)
-    n = len(equations.unknowns)
-    pattern = [[k for k in used if k < n] for used in table.pattern()]
-    loops = len(equations.loops)
-    form = block_form(pattern, [2] * loops + [1] * (len(pattern) - loops), n)
-    if not form.square:
+    form, solver = _solver_of(table, range(table.variables), table.unknowns, TableSplitter(table))
+    if solver is None:
         raise MechanismError(_mismatch(equations, form), where)
-    splitter = TableSplitter(table)
-    blocks = []
-    for members, unknowns in form.blocks:
-        part, known = splitter.part(list(members), list(unknowns))
-        blocks.append(
-            Block(
-                system=part,
-                equations=members,
-                unknowns=np.array(unknowns, dtype=np.intp),
-                variables=np.array([*unknowns, *known], dtype=np.intp),
-                record=record_of(part),
-            )
-        )
-    solver = BlockSolver(blocks, n, table.variables, table.variable_scale)
     return Compiled(
         equations=equations,
         table=table,

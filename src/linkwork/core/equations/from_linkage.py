@@ -189,20 +189,19 @@ class _LoopWriter:
         variables = []
         for body, point in incidences:
             turning = frames.angle[body].variable
-            found = [None if turning is None else canonical(turning)]
+            names = [] if turning is None else [canonical(turning)]
             for term in frames.places[body][point].sliding:
-                found += [term.length, *(name for name, _ in term.phase)]
-            found = list(dict.fromkeys(found))
-            variables.append(tuple(n for n in found if n is not None and n in unknown))
+                names += term.names
+            variables.append(tuple(n for n in dict.fromkeys(names) if n in unknown))
         relations = [
             tuple(name for name, _ in equation.terms if name in unknown) for equation in self.linear
         ]
         for law in self.contacts.laws:
-            names = dict.fromkeys(name for name, _ in (*law.terms, *law.inner))
-            relations.append(tuple(name for name in names if name in unknown))
+            tied = dict.fromkeys(name for name, _ in (*law.terms, *law.inner))
+            relations.append(tuple(name for name in tied if name in unknown))
         for loop in self.contacts.loops:
-            names = dict.fromkeys(n for term in loop.terms for n in _names_of(term))
-            relations += 2 * [tuple(name for name in names if name in unknown)]
+            tied = dict.fromkeys(n for term in loop.terms for n in term.names)
+            relations += 2 * [tuple(name for name in tied if name in unknown)]
         return Structure(tuple(incidences), tuple(variables), tuple(relations), GROUND)
 
     def _check_connected(self, structure: Structure) -> None:
@@ -297,11 +296,6 @@ class _LoopWriter:
         kinds |= {canonical(link): "angle" for link in self.linkage.links if link != GROUND}
         known = self.linkage.numbers.known
         return read_outputs(self.linkage.outputs, kinds, self.points, known, self.problems)
-
-
-def _names_of(term: Term) -> tuple[str, ...]:
-    own = () if term.length is None else (term.length,)
-    return (*own, *(name for name, _ in term.phase))
 
 
 def _variable(name: str, kind: str) -> Variable:

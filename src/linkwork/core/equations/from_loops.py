@@ -4,10 +4,12 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
+from typing import Any
 
 from linkwork.core.equations.model import (
     LoopEquation,
     LoopEquations,
+    Output,
     PointPath,
     RealEquation,
     Term,
@@ -61,34 +63,51 @@ def read_loops(mechanism: Loops) -> LoopEquations:
     problems.raise_any(f'mechanism "{mechanism.name}"')
     _check_ranges(mechanism, kinds, problems)
     problems.raise_any(f'mechanism "{mechanism.name}"')
-    driven = [canonical(which.drives[1]) for which in mechanism.inputs]
-    unknown_names = [name for name in spelling if name not in driven]
-    variables = {
-        name: Variable(name=spelling[name], kind=kinds[name], symbol=name) for name in spelling
-    }
     outputs = read_outputs(mechanism.outputs, kinds, mechanism.points, numbers.known, problems)
     problems.raise_any(f'mechanism "{mechanism.name}"')
-    order = [*unknown_names, *driven]
-    values = {canonical(name): numbers(number) for name, number in mechanism.guess.items()}
-    return LoopEquations(
-        angle=mechanism.angle,
-        unknowns=tuple(variables[name] for name in unknown_names),
-        inputs=tuple(variables[name] for name in driven),
+    return _equations_of(
+        mechanism,
+        kinds,
+        outputs,
         loops=tuple(loops),
         symbols=_symbols(mechanism, loops),
-        dimensions=dict(numbers.known),
-        start=row_of(
-            values[n] * (mechanism.angle.radians if kinds[n] == "angle" else 1) for n in order
-        ),
         points=points,
         sliders={spelling[n]: n for n in spelling if kinds[n] == "length"},
-        outputs=outputs,
         fixed=tuple(
             name
             for name, path in points.items()
             if not any(term.phase or term.length for term in path.terms)
         ),
         length_scale=_longest(loops),
+    )
+
+
+def _equations_of(
+    mechanism: Loops | PlainEquations,
+    kinds: Mapping[str, str],
+    outputs: Mapping[str, Output],
+    **own: Any,
+) -> LoopEquations:
+    """The equations over the variables of the guess; ``own``: those of the form."""
+    numbers = mechanism.numbers
+    variables = {
+        canonical(name): Variable(name=name, kind=kinds[canonical(name)], symbol=canonical(name))
+        for name in mechanism.guess
+    }
+    values = {canonical(name): numbers(number) for name, number in mechanism.guess.items()}
+    driven = [canonical(which.drives[1]) for which in mechanism.inputs]
+    unknown = [name for name in variables if name not in driven]
+    return LoopEquations(
+        angle=mechanism.angle,
+        unknowns=tuple(variables[name] for name in unknown),
+        inputs=tuple(variables[name] for name in driven),
+        dimensions=dict(numbers.known),
+        start=row_of(
+            values[name] * (mechanism.angle.radians if kinds[name] == "angle" else 1)
+            for name in (*unknown, *driven)
+        ),
+        outputs=outputs,
+        **own,
     )
 
 
@@ -265,20 +284,8 @@ def read_plain_equations(mechanism: PlainEquations) -> LoopEquations:
     outputs = read_outputs(mechanism.outputs, kinds, {}, numbers.known, problems)
     _check_ranges(mechanism, kinds, problems)
     problems.raise_any(f'mechanism "{mechanism.name}"')
-    driven = [canonical(which.drives[1]) for which in mechanism.inputs]
-    unknown_names = [name for name in spelling if name not in driven]
-    variables = {n: Variable(name=spelling[n], kind="number", symbol=n) for n in spelling}
-    values = {canonical(name): numbers(number) for name, number in mechanism.guess.items()}
-    return LoopEquations(
-        angle=mechanism.angle,
-        unknowns=tuple(variables[n] for n in unknown_names),
-        inputs=tuple(variables[n] for n in driven),
-        real=tuple(equations),
-        symbols={n: v for n, v in numbers.known.items() if n in occurring},
-        dimensions=dict(numbers.known),
-        start=row_of(values[n] for n in [*unknown_names, *driven]),
-        outputs=outputs,
-    )
+    symbols = {n: v for n, v in numbers.known.items() if n in occurring}
+    return _equations_of(mechanism, kinds, outputs, real=tuple(equations), symbols=symbols)
 
 
 def _check_plain(

@@ -52,16 +52,15 @@ class Term:
     length: str | None = None
     phase: tuple[tuple[str, float], ...] = ()
 
+    @property
+    def names(self) -> tuple[str, ...]:
+        """The symbols of its variables: the length first, then those of the phase."""
+        own = () if self.length is None else (self.length,)
+        return (*own, *(name for name, _ in self.phase))
+
     def negated(self) -> Term:
         """The term with the opposite sign."""
-        return Term(
-            value=-self.value,
-            magnitude=self.magnitude,
-            sign=-self.sign,
-            turn=self.turn,
-            length=self.length,
-            phase=self.phase,
-        )
+        return replace(self, value=-self.value, sign=-self.sign)
 
     @classmethod
     def vector(

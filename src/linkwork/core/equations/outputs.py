@@ -11,7 +11,7 @@ from linkwork.core.expression.values import check_real
 from linkwork.core.foundation.errors import ExpressionError, choices
 from linkwork.core.foundation.names import canonical
 from linkwork.core.mechanism.description import Problems
-from linkwork.core.results import quantities
+from linkwork.core.results.quantities.registry import row_quantity
 from linkwork.core.results.quantity import Kind
 
 
@@ -53,11 +53,7 @@ def read_outputs(
 
 def _derived(tree: Node, known: Mapping[str, str]) -> dict[str, str]:
     """Kinds of the names in a formula that are quantities of the registry."""
-    rows = {
-        node.name: quantities.row_quantity(node.name)
-        for node in names_in(tree)
-        if node.name not in known
-    }
+    rows = {node.name: row_quantity(node.name) for node in names_in(tree) if node.name not in known}
     kinds = {name: row.kind for name, row in rows.items() if row is not None}
     plain = (Kind.ANGLE, Kind.LENGTH)
     return {name: (k if k in plain else Kind.NUMBER).value for name, k in kinds.items()}

@@ -361,18 +361,24 @@ def _stresses(
     bars: Sequence[Bar],
 ) -> Array:
     """The force of every self-stress in each bar, (stresses, bars)."""
+    count = len(incidences)
     ends = {(link, end): k for k, (link, _, end) in enumerate(bars)}
-    columns: dict[str, int] = {}
-    entries: list[tuple[int, str, complex]] = []
-    elongations = np.zeros((2 * len(incidences) + len(relations), len(bars)))
+    entries: list[tuple[int, str, float]] = []
+    elongations = np.zeros((2 * count + len(relations), len(bars)))
     scale = max((abs(z) for places in _fixed(frames) for z in places), default=1.0) or 1.0
+
+    def add(row: int, name: str, value: complex) -> None:
+        entries.extend([(row, name, value.real), (count + row, name, value.imag)])
+
     for k, (body, point) in enumerate(incidences):
-        entries += [(k, f"point {point} x", 1.0), (k, f"point {point} y", 1j)]
+        add(k, f"point {point} x", 1.0 + 0j)
+        add(k, f"point {point} y", 1j)
         if body != GROUND:
-            entries += [(k, f"body {body} x", -1.0), (k, f"body {body} y", -1j)]
+            add(k, f"body {body} x", -1.0 + 0j)
+            add(k, f"body {body} y", -1j)
         for name, slope in _slopes(frames, body, point, scale).items():
             if name in unknown:
-                entries.append((k, name, -slope))
+                add(k, name, -slope)
         if (body, point) in ends:
             bar = ends[body, point]
             first = plain_value(frames.places[body][bars[bar][1]].fixed)
@@ -380,22 +386,14 @@ def _stresses(
             angle = frames.angle[body]
             turned = plain_value(angle.constant + frames.now(angle))
             along *= cmath.exp(1j * turned) / abs(along)
-            elongations[k, bar] = along.real
-            elongations[len(incidences) + k, bar] = along.imag
-    for _, name, _ in entries:
-        columns.setdefault(name, len(columns))
-    for equation in relations:
-        for name in _gradient(frames, equation):
-            if name in unknown:
-                columns.setdefault(name, len(columns))
+            elongations[k, bar], elongations[count + k, bar] = along.real, along.imag
+    for row, equation in enumerate(relations, 2 * count):
+        gradient = _gradient(frames, equation).items()
+        entries += [(row, name, value) for name, value in gradient if name in unknown]
+    columns = {name: k for k, name in enumerate(dict.fromkeys(name for _, name, _ in entries))}
     matrix = np.zeros((len(elongations), len(columns)))
-    for k, name, value in entries:
-        matrix[k, columns[name]] += complex(value).real
-        matrix[len(incidences) + k, columns[name]] += complex(value).imag
-    for row, equation in enumerate(relations, 2 * len(incidences)):
-        for name, value in _gradient(frames, equation).items():
-            if name in unknown:
-                matrix[row, columns[name]] += value
+    for row, name, value in entries:
+        matrix[row, columns[name]] += value
     u, sizes, _ = np.linalg.svd(matrix)
     rank = int((sizes > RANK_TOLERANCE * sizes[0]).sum()) if len(sizes) else 0
     stress: Array = u[:, rank:].T @ elongations

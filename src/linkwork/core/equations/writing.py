@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 import textwrap
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from html import escape
@@ -442,6 +442,10 @@ class EquationSheet:
         """Loops, real form and Jacobians as text and LaTeX."""
         text, latex = PlainText(), Latex()
         equations = self.equations
+
+        def both(write: Callable[[Notation[str]], Any]) -> dict[str, Any]:
+            return {"text": write(text), "latex": write(latex)}
+
         return {
             "unknowns": [v.name for v in equations.unknowns],
             "inputs": [v.name for v in equations.inputs],
@@ -450,15 +454,9 @@ class EquationSheet:
                 {"label": p.label, "text": self.loop(p, text), "latex": self.loop(p, latex)}
                 for p in equations.loops
             ],
-            "real_form": {"text": self.real_rows(text), "latex": self.real_rows(latex)},
-            "jacobian_complex": {
-                "text": self.complex_jacobian(text),
-                "latex": self.complex_jacobian(latex),
-            },
-            "jacobian_real": {
-                "text": self.real_jacobian(text),
-                "latex": self.real_jacobian(latex),
-            },
+            "real_form": both(self.real_rows),
+            "jacobian_complex": both(self.complex_jacobian),
+            "jacobian_real": both(self.real_jacobian),
         }
 
 

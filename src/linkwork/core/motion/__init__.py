@@ -24,6 +24,5 @@ if TYPE_CHECKING:
         solve_round_start as solve_round_start,
     )
     from linkwork.core.motion.sweeping import sweep as sweep
-    from linkwork.core.motion.whole_turns import warm_started as warm_started
 else:
     __getattr__ = loader(__name__)

@@ -35,7 +35,7 @@ from linkwork.core.numerics.local_parametrization import Parametrization
 from linkwork.core.numerics.passage import Passage, pass_change_points
 from linkwork.core.numerics.position_proof import Proof, prove
 from linkwork.core.numerics.proved_rows import proved_rows
-from linkwork.core.numerics.system import SolvedRows
+from linkwork.core.numerics.system import Columns, SolvedRows
 from linkwork.core.numerics.turning_point import TurnAhead
 
 
@@ -217,11 +217,7 @@ def ends_passed(drive: Drive, end: BranchEnd, passage: Passage, certify: bool) -
 # The rows of a table that lie on one branch: followed, solved, proved.
 
 
-_CHUNK = 4096  # rows solved together: large enough to amortise NumPy calls, small enough for cache
-
-
-@dataclass(frozen=True, kw_only=True, eq=False)
-class Asked:
+class Asked(Columns):
     """Rows that are asked for: values ``t`` (B,) of the path, the inputs in internal units (B, p)
     and as they are named (B, p).
     """
@@ -229,14 +225,6 @@ class Asked:
     t: Array
     inputs: Array
     in_file_units: Array
-
-    def take(self, where: IndexArray) -> Asked:
-        """Some of them."""
-        return Asked(
-            t=self.t[where],
-            inputs=self.inputs[where],
-            in_file_units=self.in_file_units[where],
-        )
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -317,8 +305,7 @@ def _rows_of_laps(lap: Lap, asked: Asked, report: Report, certify: bool) -> Bran
     number = lap.number_of(asked.in_file_units[:, 0])
     nearer = lap.nearer(asked.in_file_units[:, 0], number)
     t = np.append(nearer * drive.unit, lap.end.t)  # the last row closes the lap
-    once = replace(
-        asked,
+    once = Asked(
         t=t,
         inputs=np.append(lap.intended(nearer), lap.end.t)[:, None],
         in_file_units=np.append(nearer, np.nan)[:, None],
@@ -454,16 +441,12 @@ class _RowSolver:
             if proved is not None:
                 self.report.proved(1.0)
                 return self._placed_in(blank, there, proved), True
-        pieces: list[SolvedRows] = []
-        # chunks keep the interpolation of long tables in the cache, and progress moves
-        for begin in range(0, len(there), _CHUNK):
-            chunk = there[begin : begin + _CHUNK]
-            pieces.append(rows_on_track(solver, path, track, self.placed[chunk]))
-            self.report.solved((begin + len(chunk)) / len(there))
-        rows, to_ends = SolvedRows.concatenate(pieces), False
+        rows, to_ends = rows_on_track(solver, path, track, self.placed[there]), False
+        self.report.solved(1.0)
         if self.certify:
             asked = self.asked.inputs[there]
-            rows, to_ends = prove_rows(solver, path, track, rows, asked, self.report.proved)
+            rows, to_ends = prove_rows(solver, path, track, rows, asked)
+            self.report.proved(1.0)
         return self._placed_in(blank, there, rows), to_ends
 
     def _placed_in(self, blank: SolvedRows, there: IndexArray, rows: SolvedRows) -> SolvedRows:

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass
 
 import numpy as np
 
@@ -24,22 +23,15 @@ _BESIDE = 1e-3  # how far from a position its neighbour is sought, in weighted v
 _TRIES = 6
 
 
-@dataclass(frozen=True, kw_only=True)
-class Mobility:
-    """Grübler's count (of links), the mobility by rank (at a position), and why they differ."""
-
-    count: int | None
-    rank: int | None
-    why: str = ""
-
-
-def mobility_of(model: Model, linkage: Linkage | None, v: Array | None) -> Mobility:
-    """The mobility of a mechanism at a position (N,), if there is one; ``linkage``: its links."""
+def _mobility(
+    model: Model, linkage: Linkage | None, v: Array | None
+) -> tuple[int | None, int | None, str]:
+    """Grübler's count of the links, the rank at a position (N,), and why they differ."""
     count = None if linkage is None else grubler_count(linkage)
     rank = None if v is None else _by_rank(model, v)
     if count is None or rank is None or v is None or rank == count:
-        return Mobility(count=count, rank=rank)
-    return Mobility(count=count, rank=rank, why=_why(model, v, count, rank))
+        return count, rank, ""
+    return count, rank, _why(model, v, count, rank)
 
 
 def pins(linkage: Linkage) -> int:
@@ -139,7 +131,7 @@ def check(model: Model) -> CheckReport:
     chains = wings.use("circuits.classification")
     seen = chains.as_linkage(model)
     linkage = None if isinstance(seen, chains.NotSeen) else seen.linkage
-    mobility = mobility_of(model, linkage, start.v if start.status.ok else None)
+    count, rank, why = _mobility(model, linkage, start.v if start.status.ok else None)
     measured: tuple[tuple[str, str, float], ...] = ()
     links = joints = 0
     if isinstance(description, Linkage):
@@ -175,9 +167,9 @@ def check(model: Model) -> CheckReport:
                 model.compiled.solver.blocks, chains.block_groups(model, seen), strict=True
             )
         ),
-        mobility_count=mobility.count,
-        mobility_rank=mobility.rank,
-        mobility_why=mobility.why,
+        mobility_count=count,
+        mobility_rank=rank,
+        mobility_why=why,
         redundant=() if not start.status.ok else tuple(_redundant(model, start.v)),
         measured=measured,
         measured_in_parts=tuple(_measured_in_parts(model)),

@@ -5,13 +5,12 @@ Rates, efforts and forces have no second derivative: they are compared at more a
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, replace
-from typing import Any
+from collections.abc import Callable, Iterable, Iterator
+from dataclasses import dataclass
 
 import numpy as np
 
-from linkwork.core.foundation.arrays import AnyArray, Array, BoolArray, ComplexArray, IndexArray
+from linkwork.core.foundation.arrays import Array, BoolArray, ComplexArray, IndexArray
 from linkwork.core.foundation.errors import InputError
 from linkwork.core.foundation.names import as_names
 from linkwork.core.foundation.rounding import EPSILON, UNIT_ROUNDOFF
@@ -25,7 +24,7 @@ from linkwork.core.numerics.branch_tracking import InputPath, Track, rows_on_tra
 from linkwork.core.numerics.kantorovich import Expansion, tangent_errors
 from linkwork.core.numerics.path_proof import prove_paths
 from linkwork.core.numerics.position_proof import expansions, prove, reach, rounding_of_inputs
-from linkwork.core.numerics.system import SolvedRows
+from linkwork.core.numerics.system import Columns, SolvedRows
 from linkwork.core.results.limit import OutputLimit
 from linkwork.core.results.motion import Motion
 from linkwork.core.results.quantities.definition import Asked, Group
@@ -252,8 +251,7 @@ _MOST_EACH = 1000  # and at least this many for each: 500 are needed 0.25° from
 _HALVINGS = 24  # of a box, at most
 
 
-@dataclass(frozen=True, kw_only=True, eq=False)
-class Boxes:
+class Boxes(Columns):
     """B boxes around positions ``v`` (B, N), variables in internal units.
 
     ``half`` (B, p): how far inputs are from those in v; ``bound`` (B, N): how far all variables
@@ -261,7 +259,7 @@ class Boxes:
     ``near`` (B, N): how far the true position is from v; ``apart`` (B, n): how far all other
     positions are, in one unknown at least. ``first`` (B, N): rates of all variables with respect to
     the leading input; ``bend`` (B, N): how far variables are at most from the tangent.
-    ``lead``, ``rate`` (p,): the leading input, and how fast the others follow it.
+    ``rate`` (B, p): how fast inputs follow the leading one, the same in all boxes.
     """
 
     v: Array
@@ -273,11 +271,15 @@ class Boxes:
     apart: Array
     first: Array
     bend: Array
-    lead: int
     rate: Array
 
     def __len__(self) -> int:
         return len(self.v)
+
+    @property
+    def lead(self) -> int:
+        """The number of the leading input: the first one that moves."""
+        return int(np.argmax((self.rate != 0.0).any(axis=0)))
 
     @property
     def span(self) -> Array:
@@ -294,28 +296,8 @@ class Boxes:
     @property
     def leading(self) -> Array:
         """The leading input, (B,)."""
-        found: Array = self.v[:, self.v.shape[1] - len(self.rate) + self.lead]
+        found: Array = self.v[:, self.v.shape[1] - self.rate.shape[1] + self.lead]
         return found
-
-    def take(self, rows: IndexArray) -> Boxes:
-        """Some of the boxes."""
-        return self._with({name: own[rows] for name, own in self._columns.items()})
-
-    @classmethod
-    def joined(cls, parts: Sequence[Boxes]) -> Boxes:
-        """The boxes of all parts."""
-        columns = [part._columns for part in parts]
-        return parts[0]._with(
-            {name: np.concatenate([own[name] for own in columns]) for name in columns[0]}
-        )
-
-    def _with(self, columns: Mapping[str, AnyArray]) -> Boxes:
-        every: dict[str, Any] = {**vars(self), **columns}
-        return Boxes(**every)
-
-    @property
-    def _columns(self) -> dict[str, AnyArray]:
-        return {name: own for name, own in vars(self).items() if name not in ("lead", "rate")}
 
 
 def boxes_of(model: Model, motion: Motion, v: Array) -> Boxes:
@@ -359,7 +341,7 @@ def boxes_of(model: Model, motion: Motion, v: Array) -> Boxes:
     table = inputs[~motion.added[found]] if (~motion.added[found]).any() else inputs
     lead, rate = leading_input(table)
     boxes = _reached(model, v, half, lead, rate, known)
-    boxes = replace(boxes, known=known & ~dead)
+    boxes = boxes.with_columns(known=known & ~dead)
     open_ = np.flatnonzero(~apart & reached[:-1] & reached[1:])
     if not len(open_):
         return boxes
@@ -369,7 +351,7 @@ def boxes_of(model: Model, motion: Motion, v: Array) -> Boxes:
     wide = _reached(model, v[begin], steps[open_], lead, rate, boxes.known[begin])
     rising = inputs[toward, lead] > inputs[begin, lead]
     halves = _divided(model, wide)
-    return Boxes.joined([boxes, halves.take(np.arange(len(open_)) + rising * len(open_))])
+    return Boxes.concatenate([boxes, halves.take(np.arange(len(open_)) + rising * len(open_))])
 
 
 def variables_of(model: Model, motion: Motion) -> Array:
@@ -397,10 +379,10 @@ def _reached(
         linear = solver.linearise(v)
         places = [at for at in expansions(solver, v, linear) if isinstance(at, Expansion)]
         found = reach(solver, v, np.where(holds[:, None], wide, 0.0), places)
-        bound[:, :n], holds = found.error_bound, holds & found.holds
+        bound[:, :n], holds = found.error_bound[:, :n], holds & found.holds
         apart = found.isolation_radius
         near = prove(solver, v, rounding, places).error_bound
-        first = solver.rates(v, rate, linear).first
+        first = solver.rates(v, rate).first
         # conversion of units, and the rate of inputs from one end of the table to the other
         lost = 2.0 * rounding + UNIT_ROUNDOFF * np.abs(half)
         span = half[:, lead] * _SLACK
@@ -412,13 +394,12 @@ def _reached(
         half=half,
         bound=bound,
         holds=holds & known,
-        known=known,
+        known=known.copy(),
         near=near,
         apart=apart,
         first=first,
         bend=bend,
-        lead=lead,
-        rate=rate,
+        rate=np.tile(rate, (len(v), 1)),
     )
 
 
@@ -456,7 +437,7 @@ def refined(
         boxes = _divided(model, boxes)
         if progress is not None:
             progress(1.0 - 1.0 / (2 + level))
-    return Boxes.joined(left)
+    return Boxes.concatenate(left)
 
 
 def _divided(model: Model, boxes: Boxes) -> Boxes:
@@ -464,7 +445,7 @@ def _divided(model: Model, boxes: Boxes) -> Boxes:
     the same branch.
     """
     solver = (model.untimed or model).compiled.solver
-    n, lead, rate = solver.unknowns, boxes.lead, boxes.rate
+    n, lead, rate = solver.unknowns, boxes.lead, boxes.rate[0]
     path = Drive.through(model, boxes.v[0, n:], rate, lead).path
     step = np.concatenate([-0.5 * boxes.half[:, lead], 0.5 * boxes.half[:, lead]])[:, None]
     whole = np.tile(np.arange(len(boxes)), 2)
@@ -482,7 +463,7 @@ def _divided(model: Model, boxes: Boxes) -> Boxes:
         ways = np.flatnonzero(known & ~(twice.holds & there.all(axis=1)))
         new = _rows(model, path, solved.v[ways], lead)
         known[ways] = _connected(solver, path, old.take(whole[ways]), new)
-    return replace(found, holds=found.holds & known, known=known)
+    return found.with_columns(holds=found.holds & known, known=known)
 
 
 def _rows(model: Model, path: InputPath, v: Array, lead: int) -> SolvedRows:

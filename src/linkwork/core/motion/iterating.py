@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
+from dataclasses import replace
 
 import numpy as np
 
@@ -18,10 +19,9 @@ from linkwork.core.foundation.values import as_told, check_class, given_or, is_l
 from linkwork.core.motion.model import Model
 from linkwork.core.motion.positions import Named, name_series, target_values
 from linkwork.core.motion.solving import solve
-from linkwork.core.numerics.block_solver import Block
 from linkwork.core.numerics.newton import NewtonOptions
 from linkwork.core.results.motion import Motion
-from linkwork.core.results.position import Iterate, Iterates, Position
+from linkwork.core.results.position import Iterate, Iterates, NewtonTrail, Position
 from linkwork.core.results.quantity import Kind
 from linkwork.core.results.vector_loop import MovingLoop, MovingVector, VectorLoop
 
@@ -52,17 +52,41 @@ def iterates(
     """
     options = given_or(NewtonOptions(), "options", options)
     model = model.with_guess({} if guess is None else guess)
-    position = solve(model, at, from_guess=True, options=options)
-    solver = model.compiled.solver
+    position = solve(model, at, from_guess=True, options=options, with_steps=True)
+    unknowns = model.equations.unknowns
+    place = {u.name: (k, model.units.scale(Kind(u.kind))) for k, u in enumerate(unknowns)}
     v = model.equations.start.copy()
-    v[solver.unknowns :] = target_values(model, at) * model.input_scale
-    seen = [_Seen(block) for block in solver.blocks]
-    done = solver.solve(v[None, :], options, list(seen))
+    v[len(unknowns) :] = target_values(model, at) * model.input_scale
     found: list[Iterate] = []
-    for watched in seen:
-        found += watched.told(model, v)
-        v[watched.block.unknowns] = done.v[0, watched.block.unknowns]
-    return Iterates(position=position, iterates=tuple(found))
+    for trail in position.steps:
+        rows = np.repeat(v[None, :], len(trail.steps), axis=0)
+        for name in trail.steps[0].unknowns:
+            k, scale = place[name]
+            rows[:, k] = [step.unknowns[name] * scale for step in trail.steps]
+        found += _iterates_of(model, trail, rows)
+        v = rows[-1]  # later blocks know where this one ended
+    return Iterates(position=replace(position, steps=()), iterates=tuple(found))
+
+
+def _iterates_of(model: Model, trail: NewtonTrail, v: Array) -> list[Iterate]:
+    """The iterates of one block, at all variables v (K, N)."""
+    named = _named(model, v)
+    points = _points_of(named, len(v))
+    open_ends = wings.use("circuits.failure.remedies").open_ends
+    return [
+        Iterate(
+            equations=trail.equations,
+            k=step.k,
+            unknowns=step.unknowns,
+            residuals=step.values,
+            norm=step.residual,
+            jacobian=step.jacobian,
+            step=step.step,
+            points=points[row],
+            apart=open_ends(model, named, points[row], row),
+        )
+        for row, step in enumerate(trail.steps)
+    ]
 
 
 def pulled_guess(
@@ -163,54 +187,6 @@ def _moved_by(model: Model, v: Array, unknown: int, point: str) -> tuple[complex
     rows[2, unknown] += step
     here, below, above = (complex(*points[point]) for points in _points(model, rows))
     return here, (above - below) / (2.0 * step)
-
-
-class _Seen:
-    """Keeps the iterates of one block: variables (N,), residuals (m,), corrections (n,)."""
-
-    def __init__(self, block: Block) -> None:
-        self.block = block
-        self.kept: list[tuple[int, Array, Array, Array | None]] = []
-
-    def __call__(self, k: int, v: Array, residual: Array, change: Array | None) -> None:
-        self.kept.append(
-            (k, v[0].copy(), residual[0].copy(), None if change is None else change[0])
-        )
-
-    def told(self, model: Model, start: Array) -> list[Iterate]:
-        """The iterates by name; ``start`` (N,): values of all other variables."""
-        if not self.kept:
-            return []
-        block, n = self.block, len(self.block.unknowns)
-        unknowns = [model.equations.unknowns[k] for k in block.unknowns]
-        scales = [model.units.scale(Kind(u.kind)) for u in unknowns]
-        x = np.stack([v[:n] for _, v, _, _ in self.kept])
-        whole = np.repeat(start[None, :], len(x), axis=0)
-        # all other variables as they were when this block was iterated
-        whole[:, block.unknowns] = x
-        jacobians = block.system.jacobian(whole[:, block.variables])[:, :, :n]
-        named = _named(model, whole)
-        points = _points_of(named, len(whole))
-        weights = block.system.variable_scale[:n]
-        return [
-            Iterate(
-                equations=tuple(model.equations.labels[e] for e in block.equations),
-                k=k,
-                unknowns={
-                    u.name: float(value / scale)
-                    for u, value, scale in zip(unknowns, x[row], scales, strict=True)
-                },
-                residuals=tuple(map(float, residual)),
-                norm=float(np.linalg.norm(residual)),
-                jacobian=tuple(tuple(map(float, line)) for line in jacobians[row]),
-                step=None if change is None else float(np.abs(change / weights).max()),
-                points=points[row],
-                apart=wings.use("circuits.failure.remedies").open_ends(
-                    model, named, points[row], row
-                ),
-            )
-            for row, (k, _, residual, change) in enumerate(self.kept)
-        ]
 
 
 def _points(model: Model, v: Array) -> list[dict[str, tuple[float, float]]]:

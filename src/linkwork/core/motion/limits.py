@@ -6,7 +6,6 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from itertools import combinations
-from typing import Protocol
 
 import numpy as np
 
@@ -211,12 +210,9 @@ def _is_before(crossing: ChangePoint, lock: Lock, side: float) -> bool:
 def _locked_end(drive: Drive, lock: Lock, side: float, certify: bool) -> BranchEnd:
     """The end of a branch where blocks lock at one input, each proved by itself."""
     low, high = lock.bracket
-    place = Crossing(
-        t=lock.t, v=lock.v, directions=np.empty((2, 0)), bracket=lock.bracket, located=True
-    )
     return BranchEnd(
         side=side,
-        limit=_locate_limit(drive, place, LimitKind.DEAD_POINT, _locking(drive, lock.v)),
+        limit=_limit_at(drive, LimitKind.DEAD_POINT, lock.t, lock.v, lock.bracket),
         t=lock.t,
         slack=max(high - lock.t, lock.t - low),
         v=_touching(drive, lock.v),
@@ -270,7 +266,8 @@ def end_at_dead_point(
 
 def dead_point_limit(drive: Drive, turn: TurningPoint) -> Limit:
     """The limit at a dead point, in file units."""
-    return _locate_limit(drive, turn, LimitKind.DEAD_POINT, _locking(drive, turn.v))
+    kind = LimitKind.DEAD_POINT
+    return _limit_at(drive, kind, turn.t, turn.v, turn.bracket, located=turn.located)
 
 
 def _locking(drive: Drive, v: Array) -> tuple[int, ...]:
@@ -301,8 +298,8 @@ def change_point_limit(drive: Drive, crossing: Crossing) -> Limit:
         rates.append(direction / direction[p] if moving else np.full(len(direction), np.nan))
     taking_part = np.any(crossing.directions != 0.0, axis=0)
     onward, other = (_rates(drive.model, np.where(taking_part, rate, np.nan)) for rate in rates)
-    blocks = _locking(drive, crossing.v)
-    limit = _locate_limit(drive, crossing, LimitKind.CHANGE_POINT, blocks)
+    kind, located = LimitKind.CHANGE_POINT, bool(crossing.located)
+    limit = _limit_at(drive, kind, crossing.t, crossing.v, crossing.bracket, located=located)
     return replace(limit, onward=onward, other=other)
 
 
@@ -336,14 +333,15 @@ def end_at_change_point(
     model, t = drive.model, crossings[0].t
     low = min(crossing.bracket[0] for crossing in crossings)
     high = max(crossing.bracket[1] for crossing in crossings)
-    place = Crossing(
-        t=t,
-        v=v,
-        directions=crossings[0].directions,
-        bracket=(low, high),
+    limit = _limit_at(
+        drive,
+        LimitKind.CHANGE_POINT,
+        t,
+        v,
+        (low, high),
         located=all(crossing.located for crossing in crossings),
+        blocks=[crossing.block for crossing in crossings],
     )
-    blocks = [crossing.block for crossing in crossings]
     onward: dict[str, float] = {}
     other: dict[str, float] = {}
     for crossing in crossings:
@@ -351,9 +349,7 @@ def end_at_change_point(
         other |= _rates(model, crossing.other)
     return BranchEnd(
         side=side,
-        limit=replace(
-            _locate_limit(drive, place, LimitKind.CHANGE_POINT, blocks), onward=onward, other=other
-        ),
+        limit=replace(limit, onward=onward, other=other),
         t=t,
         slack=max(high - t, t - low),
         v=_touching(drive, v),
@@ -373,34 +369,33 @@ def _touching(drive: Drive, v: Array) -> Array | None:
     return done.v[0] if done.status[0] == Status.CONVERGED.code else None
 
 
-class _EndPlace(Protocol):
-    """A singular position (N,) at a value of the path's parameter, with a bracket around it."""
+def _limit_at(
+    drive: Drive,
+    kind: LimitKind,
+    t: float,
+    v: Array,
+    bracket: tuple[float, float],
+    *,
+    located: bool = True,
+    blocks: Sequence[int] | None = None,
+) -> Limit:
+    """The limit at a position v (N,) at a value t of the path.
 
-    @property
-    def t(self) -> float: ...
-    @property
-    def v(self) -> Array: ...
-    @property
-    def bracket(self) -> tuple[float, float]: ...
-    @property
-    def located(self) -> bool: ...
-
-
-def _locate_limit(drive: Drive, place: _EndPlace, kind: LimitKind, blocks: Sequence[int]) -> Limit:
-    """The limit; ``blocks``: the numbers of the blocks that lock."""
-    model = drive.model
-    low, high = (edge / drive.unit for edge in place.bracket)
+    ``blocks``: the numbers of the blocks that lock, by default those that are singular there.
+    """
+    low, high = (edge / drive.unit for edge in bracket)
     status = Status.OUT_OF_REACH if kind is LimitKind.DEAD_POINT else Status.CHANGE_POINT
+    blocks = _locking(drive, v) if blocks is None else blocks
     equations = [e for block in blocks for e in drive.solver.blocks[block].equations]
     return Limit(
         kind=kind,
-        input=float(place.t / drive.unit) + 0.0,
+        input=float(t / drive.unit) + 0.0,
         # outwards: the division by the unit has rounded both ends
         bracket=(math.nextafter(low, -math.inf), math.nextafter(high, math.inf)),
-        located=bool(place.located),
+        located=located,
         status=status,
-        loops=tuple(model.equations.labels[e] for e in equations),
-        in_line=tuple(dict.fromkeys(n for b in blocks for n in links_in_line(model, b, place.v))),
+        loops=tuple(drive.model.equations.labels[e] for e in equations),
+        in_line=tuple(dict.fromkeys(n for b in blocks for n in links_in_line(drive.model, b, v))),
     )
 
 

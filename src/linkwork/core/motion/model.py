@@ -39,10 +39,9 @@ from linkwork.core.mechanism.varied_numbers import tolerance_problems
 from linkwork.core.motion.guides_from_equations import rails_of
 from linkwork.core.motion.stop_quantities import stop_problems
 from linkwork.core.numerics.newton import NewtonOptions
-from linkwork.core.results import quantities
 from linkwork.core.results.position import Position
 from linkwork.core.results.quantities.definition import Asked, MechanismNames, RowQuantity, Solved
-from linkwork.core.results.quantities.registry import Quantities
+from linkwork.core.results.quantities.registry import Quantities, row_quantity
 from linkwork.core.results.quantity import Kind, Units
 
 
@@ -552,7 +551,7 @@ def model_of(description: Description) -> Model:
 def _derived(output: Output) -> Iterator[tuple[Name, RowQuantity]]:
     """The names in a formula that are quantities of the registry."""
     for node in names_in(output.formula):
-        row = quantities.row_quantity(node.name)
+        row = row_quantity(node.name)
         if row is not None:
             yield node, row
 

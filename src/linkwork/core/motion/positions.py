@@ -24,10 +24,10 @@ from linkwork.core.numerics.branch_tracking import InputPath, Node, Track, rows_
 from linkwork.core.numerics.path_proof import prove_path
 from linkwork.core.numerics.position_proof import rounding_of_inputs
 from linkwork.core.numerics.system import SolvedRows
-from linkwork.core.results import quantities
 from linkwork.core.results.failure import Failure
 from linkwork.core.results.position import Certificate, NewtonTrail, Position
 from linkwork.core.results.quantities.definition import Group
+from linkwork.core.results.quantities.registry import row_quantity
 from linkwork.core.results.quantity import Kind
 from linkwork.core.results.series import Series
 
@@ -139,7 +139,7 @@ class QuantityValues(ABC):
                 if symbol in used:
                     found[symbol] = self._coordinate(f"{point}.{axis}")
         for symbol in used - set(found):
-            if quantities.row_quantity(symbol) is not None:
+            if row_quantity(symbol) is not None:
                 asked = self.model.quantities.find(symbol)
                 jet, scale = asked.jet(self), self.model.units.scale(asked.own.kind)
                 found[symbol] = Jet(jet.v, jet.d1 / scale, jet.d2 / scale)
@@ -290,7 +290,6 @@ def prove_rows(
     track: Track,
     rows: SolvedRows,
     asked: Array,
-    progress: Callable[[float], None] | None = None,
 ) -> tuple[SolvedRows, bool]:
     """Prove rows solved along a track for the inputs ``asked`` (B, p).
 
@@ -310,7 +309,7 @@ def prove_rows(
     nodes = nodes_around(track, rows.t[found])
     points, place = _path_points(solver, [track.nodes[k] for k in nodes], rows, asked, found)
     anchor = int(place[nodes.index(track.start)])
-    proof = prove_path(solver, path, points, anchor=anchor, progress=progress)
+    proof = prove_path(solver, path, points, anchor=anchor)
     joined = proof.connected_to(anchor)
     mine = place[len(nodes) :]
     position = proof.position.holds[mine]

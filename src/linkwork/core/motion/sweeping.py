@@ -29,7 +29,6 @@ from linkwork.core.motion.model import FITS, Model, leading_input, misfit
 from linkwork.core.motion.rows_between import RowsBetween, fitting, message_of, motion_of_rows
 from linkwork.core.motion.solving import Start, first_position
 from linkwork.core.motion.sweep_table import NamedEnd, SweepTable
-from linkwork.core.motion.whole_turns import warm_started
 from linkwork.core.numerics.branch_tracking import Node, Track
 from linkwork.core.numerics.local_parametrization import coincide, whole_turns
 from linkwork.core.numerics.newton import NewtonOptions
@@ -389,19 +388,3 @@ def _without_start(model: Model, start: Start) -> Motion:
     nothing_added = np.zeros(len(rows), dtype=bool)
     motion = motion_of_rows(model, rows, start.message, nothing_added)
     return replace(motion, failure=start.failure)
-
-
-def approximate_sweep(model: Model, neighbour: Motion | None = None) -> Motion:
-    """The cycle of a slightly changed mechanism, without proofs.
-
-    It is many times faster than :func:`sweep`: Newton-Raphson starts from the positions of the
-    neighbour, at all rows together. If that is not safe, the branch is followed again; see
-    :func:`linkwork.core.motion.whole_turns.warm_started`.
-
-    Parameters
-    ----------
-    neighbour : Motion, optional
-        The cycle of a mechanism with slightly different numbers.
-    """
-    started = None if neighbour is None else warm_started(model, neighbour)
-    return sweep(model, certify=False, explained=False) if started is None else started

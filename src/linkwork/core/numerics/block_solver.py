@@ -4,13 +4,13 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import cached_property
+from typing import Any
 
 import numpy as np
 
 from linkwork.core.foundation.arrays import Array, IndexArray, StatusArray, inverses, matrix_vector
-from linkwork.core.foundation.rounding import FAR, SMALLEST_RATIO
 from linkwork.core.foundation.statuses import CONVERGED
 from linkwork.core.numerics.newton import NewtonOptions, Watch, newton
 from linkwork.core.numerics.system import Recorded, SolvedRows, System
@@ -37,6 +37,13 @@ class Block:
     def places(self) -> list[int]:
         """``variables`` as a list."""
         return list(map(int, self.variables))
+
+    @cached_property
+    def alone(self) -> BlockSolver:
+        """The block by itself: its variables in its own order, the known ones as inputs."""
+        n, count = len(self.unknowns), len(self.variables)
+        own = replace(self, unknowns=np.arange(n), variables=np.arange(count))
+        return BlockSolver([own], n, count, self.system.variable_scale)
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -103,39 +110,25 @@ class BlockSolver:
         count = len(v)
         status = np.full(count, CONVERGED, dtype=np.int8)
         failed = np.full(count, -1)
-        iterations = np.zeros(count, dtype=np.int64)
-        residual = np.zeros(count)
-        first = np.zeros(count)
-        contraction = np.zeros(count)
+        names = ("residual", "first_step", "contraction")
+        largest: dict[str, Any] = {name: np.zeros(count) for name in names}
+        largest["iterations"] = np.zeros(count, dtype=np.int64)
         live = np.arange(count)
         for k, block in enumerate(self.blocks):
             here = v[live[:, None], block.variables]
-            watch, done = watches[k] if watches else None, None
-            if watch is None and block.record is not None:
-                done = _solve_recorded(block, block.record, here, options or self.options)
-            if done is None:
-                done = newton(block.system, here, options or self.options, watch)
+            watch = watches[k] if watches else None
+            done = newton(block.system, here, options or self.options, watch)
             v[live[:, None], block.unknowns] = done.v[:, : len(block.unknowns)]
             status[live] = done.status
-            iterations[live] = np.maximum(iterations[live], done.iterations)
-            residual[live] = np.maximum(residual[live], done.residual)
-            first[live] = np.maximum(first[live], done.first_step)
-            contraction[live] = np.maximum(contraction[live], done.contraction)
+            for name, column in largest.items():
+                column[live] = np.maximum(column[live], getattr(done, name))
             wrong = done.status != CONVERGED
             if wrong.any():
                 failed[live[wrong]] = k
                 live = live[~wrong]
                 if not len(live):
                     break
-        return SolvedRows(
-            v=v,
-            status=status,
-            failed_block=failed,
-            iterations=iterations,
-            residual=residual,
-            first_step=first,
-            contraction=contraction,
-        )
+        return SolvedRows(v=v, status=status, failed_block=failed, **largest)
 
     def solve_row(self, v: list[float], options: NewtonOptions) -> SingleSolution:
         """Newton-Raphson block by block from v (N,), in place, on floats.
@@ -201,14 +194,11 @@ class BlockSolver:
         """:meth:`solve` for a few rows."""
         rows = start.tolist()
         done = [self.solve_row(row, options) for row in rows]
+        names = ("failed_block", "iterations", "residual", "first_step", "contraction")
         return SolvedRows(
             v=np.array(rows).reshape(start.shape),
             status=np.array([x.status for x in done], dtype=np.int8),
-            failed_block=np.array([x.failed_block for x in done]),
-            iterations=np.array([x.iterations for x in done]),
-            residual=np.array([x.residual for x in done]),
-            first_step=np.array([x.first_step for x in done]),
-            contraction=np.array([x.contraction for x in done]),
+            **{name: np.array([getattr(x, name) for x in done]) for name in names},
         )
 
     def _rates_singly(self, v: Array, input_rate: Array, input_bend: Array | float) -> SolvedRows:
@@ -251,7 +241,6 @@ class BlockSolver:
         self,
         v: Array,
         input_rate: Array,
-        linear: Sequence[Linearised] | None = None,
         input_bend: Array | float = 0.0,
     ) -> SolvedRows:
         """First and second derivative of all variables, as the inputs move.
@@ -264,8 +253,6 @@ class BlockSolver:
             Converged positions.
         input_rate : (p,) or (B, p)
             u' of the inputs.
-        linear : list of Linearised, optional
-            ``linearise(v)``, if computed already.
         input_bend : (B, p), optional
             u''; by default the rate is constant.
 
@@ -274,7 +261,7 @@ class BlockSolver:
         SolvedRows
             ``v``, ``first``, ``second``, ``condition``, ``nearness``, ``orientation``.
         """
-        if linear is None and self.goes_singly(len(v)):
+        if self.goes_singly(len(v)):
             return self._rates_singly(v, input_rate, input_bend)
         count = len(v)
         first = np.zeros((count, self.variables))
@@ -284,37 +271,9 @@ class BlockSolver:
         condition, nearness = np.ones(count), np.ones(count)
         orientation = np.zeros((count, len(self.blocks)), dtype=np.int8)
         for k, block in enumerate(self.blocks):
-            n = len(block.unknowns)
-            if linear is None and block.record is not None:
-                own, near, orientation[:, k] = _recorded_rates(
-                    block, block.record, v, first, second
-                )
-                condition, nearness = np.maximum(condition, own), np.maximum(nearness, near)
-                continue
-            system, part = block.system, linearise_block(block, v) if linear is None else linear[k]
-            here = v[:, block.variables]
-            jacobian, inverse = part.jacobian, part.inverse
-            # earlier blocks have left their rates there: they are known motions for this one
-            known = block.variables[n:]
-            direction = np.empty_like(here)
-            direction[:, n:] = first[:, known]
-            with np.errstate(over="ignore", invalid="ignore"):  # rates may be of any size
-                # eq. (11)
-                x1 = -matrix_vector(inverse, matrix_vector(jacobian[:, :, n:], direction[:, n:]))
-                direction[:, :n] = x1
-                # eq. (12)
-                bend = system.second_directional_derivative(here, direction) + matrix_vector(
-                    jacobian[:, :, n:], second[:, known]
-                )
-                x2 = -matrix_vector(inverse, bend)
-            first[:, block.unknowns], second[:, block.unknowns] = x1, x2
-            own = _condition(system, jacobian[:, :, :n], inverse)
-            condition = np.maximum(condition, own)
-            # balancing the columns costs more than the rates themselves
-            if own.max(initial=0.0) > LARGE:
-                own = _nearness(own, system.equation_scale, jacobian[:, :, :n], inverse)
-            nearness = np.maximum(nearness, own)
-            orientation[:, k] = part.sign
+            rates = _array_rates if block.record is None else _recorded_rates
+            own, near, orientation[:, k] = rates(block, v, first, second)
+            condition, nearness = np.maximum(condition, own), np.maximum(nearness, near)
         return SolvedRows(
             v=v,
             first=first,
@@ -350,55 +309,43 @@ def _columns(v: Array) -> list[Array]:
     return list(np.ascontiguousarray(v.T))
 
 
-def _solve_recorded(
-    block: Block, record: Recorded, start: Array, options: NewtonOptions
-) -> SolvedRows | None:
-    """Newton-Raphson on a block's own variables (B, N); ``None`` where a row needs more care: a
-    shortened step, or one that fails.
+def _array_rates(
+    block: Block, v: Array, first: Array, second: Array
+) -> tuple[Array, Array, StatusArray]:
+    """Rates of one block, in place: condition, nearness, signs of determinants.
+
+    The blocks before have left their rates there: they are known motions for this one.
     """
-    correct, n = record.of_arrays.correct, len(block.unknowns)
-    values, count = _columns(start), len(start)
-    iterations, first, contraction = np.zeros(count, np.int64), np.zeros(count), np.zeros(count)
-    last: Array | None = None
-    with np.errstate(all="ignore"):
-        for k in range(options.max_steps + 1):
-            error, size, turn, *change = correct(*values)
-            done = error <= options.equation_tolerance  # eq. (8)
-            if last is not None:
-                done |= last <= options.solution_tolerance
-            if done.all():
-                break
-            going = ~done
-            lost = ~(error < np.inf) | going & (~(size < np.inf) | (turn > options.largest_turn))
-            if k == options.max_steps or lost.any() or (last is not None and (last > FAR).any()):
-                return None
-            if done.any():  # rows that are done stay
-                change, size = [np.where(done, 0.0, x) for x in change], np.where(done, 0.0, size)
-            values[:n] = [v - x for v, x in zip(values, change, strict=False)]  # eq. (6)
-            iterations += going
-            if last is None:
-                first = size
-            else:
-                ratio = np.where(size > SMALLEST_RATIO, size / last, 0.0)
-                contraction = np.maximum(contraction, ratio)
-            last = size
-    return SolvedRows(
-        v=np.stack(values, axis=1),
-        status=np.full(count, CONVERGED, dtype=np.int8),
-        iterations=iterations,
-        residual=error,
-        first_step=first,
-        contraction=contraction,
-    )
+    system, part, n = block.system, linearise_block(block, v), len(block.unknowns)
+    here, known = v[:, block.variables], block.variables[n:]
+    jacobian, inverse = part.jacobian, part.inverse
+    direction = np.empty_like(here)
+    direction[:, n:] = first[:, known]
+    with np.errstate(over="ignore", invalid="ignore"):  # rates may be of any size
+        # eq. (11)
+        x1 = -matrix_vector(inverse, matrix_vector(jacobian[:, :, n:], direction[:, n:]))
+        direction[:, :n] = x1
+        # eq. (12)
+        bend = system.second_directional_derivative(here, direction) + matrix_vector(
+            jacobian[:, :, n:], second[:, known]
+        )
+        x2 = -matrix_vector(inverse, bend)
+    first[:, block.unknowns], second[:, block.unknowns] = x1, x2
+    condition = nearness = _condition(system, jacobian[:, :, :n], inverse)
+    # balancing the columns costs more than the rates themselves
+    if condition.max(initial=0.0) > LARGE:
+        nearness = _nearness(condition, system.equation_scale, jacobian[:, :, :n], inverse)
+    return condition, nearness, part.sign
 
 
 def _recorded_rates(
-    block: Block, record: Recorded, v: Array, first: Array, second: Array
+    block: Block, v: Array, first: Array, second: Array
 ) -> tuple[Array, Array, StatusArray]:
-    """Rates of one block, in place: condition, nearness, signs of determinants."""
+    """The same by the block's record."""
     n, known = len(block.unknowns), block.variables[len(block.unknowns) :]
     here = _columns(v[:, block.variables])
-    functions, count = record.of_arrays, len(v)
+    assert block.record is not None
+    functions, count = block.record.of_arrays, len(v)
     with np.errstate(all="ignore"):
         *found, own, determinant = functions.rates(
             *here, *_columns(first[:, known]), *_columns(second[:, known])

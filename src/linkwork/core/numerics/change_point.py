@@ -14,7 +14,6 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
-from typing import Protocol
 
 import numpy as np
 
@@ -23,7 +22,7 @@ from linkwork.core.foundation.rounding import EPSILON
 from linkwork.core.numerics.block_solver import BlockSolver
 from linkwork.core.numerics.branch_tracking import InputPath, Node, predict
 from linkwork.core.numerics.decomposition import JoinedBlocks, closure_of
-from linkwork.core.numerics.system import System
+from linkwork.core.numerics.system import SmallSystem, System
 
 _STEPS = 12
 
@@ -45,24 +44,10 @@ class KnownJet:
         return cls(lambda t: (y, first, second))
 
 
-class Equations(Protocol):
-    """The part of a System that locating a crossing uses."""
-
-    @property
-    def unknowns(self) -> int: ...
-    @property
-    def equation_scale(self) -> Array: ...
-    @property
-    def variable_scale(self) -> Array: ...
-    def jacobian(self, v: Array) -> Array: ...
-    def residual_and_jacobian(self, v: Array) -> tuple[Array, Array]: ...
-    def hessians(self, v: Array, weights: Array) -> Array: ...
-
-
 class CrossingSystem:
     """The extended system of some equations, in scaled variables and equations."""
 
-    def __init__(self, system: Equations, known: KnownJet) -> None:
+    def __init__(self, system: SmallSystem, known: KnownJet) -> None:
         self.system, self.known = system, known
         self.n = system.unknowns
         self.weights = system.variable_scale[: self.n]
@@ -88,7 +73,7 @@ class CrossingSystem:
         v, basis, second = self._at(x, t)
         matrix: Array = basis @ self.system.hessians(v[0], (w / self.scale)[None, :])[0] @ basis.T
         if second.any():  # known variables that do not move at a constant rate
-            slope = self.system.jacobian(v)[0, :, self.n :]
+            slope = self.system.residual_and_jacobian(v)[1][0, :, self.n :]
             matrix[self.n, self.n] += float(w @ (slope @ second / self.scale))
         return matrix
 
@@ -149,7 +134,6 @@ class CrossingSystem:
 _DRIVEN = 2e-13  # relative: how well a crossing is located if earlier blocks cross too
 _SHARES = 17  # steps in which rates are moved across a kink
 _FAR = 1e-3  # ratio of a block's singular values from which on it is far from a singular position
-_SINGULAR = 1e-8  # ratio up to which it is singular, to rounding
 _UNFOLDED = 1e-13  # |β| beyond which the branches pass each other without touching
 
 
@@ -176,25 +160,13 @@ class ChangePoint:
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Crossing:
-    """A change point: parameter with bracket, position (N,), directions of both curves (2, N).
-
-    ``clear``: whether other blocks are far from singular positions, or at one, too.
-    """
+    """A change point: parameter with bracket, position (N,), directions of both curves (2, N)."""
 
     t: float
     v: Array
     directions: Array
     bracket: tuple[float, float]
     located: bool
-    clear: bool = False
-
-
-def is_clear(solver: BlockSolver, point: ChangePoint) -> bool:
-    """Whether no block becomes singular next to a change point but not there, and none before its
-    own in solving order.
-    """
-    near = {k: ratio for k, ratio in enumerate(_ratios(solver, point.v)) if ratio <= _FAR}
-    return min(near, default=-1) == point.block and max(near.values()) <= _SINGULAR
 
 
 def locate_change_point(
@@ -356,7 +328,9 @@ class _Located:
     other: Array
 
 
-def _locate(system: Equations, known: KnownJet, x: Array, t: float, own: Array) -> _Located | None:
+def _locate(
+    system: SmallSystem, known: KnownJet, x: Array, t: float, own: Array
+) -> _Located | None:
     """The crossing near (x, t); ``own`` (n,) is the derivative of the branch that is followed."""
     crossing = CrossingSystem(system, known)
     found = crossing.solve(x, t)

@@ -4,14 +4,14 @@ from __future__ import annotations
 
 import itertools
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 
 import numpy as np
 
 from linkwork.core.foundation.arrays import Array
-from linkwork.core.foundation.rounding import CLOSER_TANGENT, EPSILON, LARGEST_POLISH
+from linkwork.core.foundation.rounding import EPSILON, LARGEST_POLISH
 from linkwork.core.foundation.statuses import CONVERGED, CircuitEnd
 from linkwork.core.foundation.units import FULL_TURN
 from linkwork.core.numerics.branch_tracking import (
@@ -22,21 +22,17 @@ from linkwork.core.numerics.branch_tracking import (
     follow,
     follow_with_proof,
     node_at,
-    predict,
 )
-from linkwork.core.numerics.change_point import Crossing, is_clear, locate_change_point
+from linkwork.core.numerics.change_point import Crossing, locate_change_point
 from linkwork.core.numerics.local_parametrization import (
     Parametrization,
     Parametrizations,
     fastest_leader,
-    near,
     same_position,
-    whole_turns,
 )
 from linkwork.core.numerics.newton import sharp
 
 _STILL = 8.0 * EPSILON  # relative: a variable that moves less over a step rests, to rounding
-_KEPT = 256  # divided steps of one leader
 _DIVISIONS = 24  # halvings of a step in which a variable turns back several times
 _SAFE = 4.0  # the error of a cubic is at most this many times that halfway
 _SEARCH = 80  # positions solved to find a sign change
@@ -65,22 +61,6 @@ def node_between(
     nearer = low if s < 0.5 else high
     nodes, end = follow(led.solver, led.path, nearer, float(guess[-1]))
     return nodes[-1] if nodes and end is None else None
-
-
-def share_at(place: int, low: Node, high: Node, value: float) -> float:
-    """The fraction of a step at which the cubic through a variable has a value."""
-    h = high.t - low.t
-    ends = tuple(float(x[place]) for x in (low.v, low.first, high.v, high.first))
-    # the cubic is monotonic in a divided step, so bisection finds the only place
-    rising = ends[2] > ends[0]
-    s0, s1 = 0.0, 1.0
-    for _ in range(60):
-        s = 0.5 * (s0 + s1)
-        if (hermite(s, h, *ends) < value) == rising:
-            s0 = s
-        else:
-            s1 = s
-    return 0.5 * (s0 + s1)
 
 
 def one_way(led: Parametrization, place: int, before: Node, after: Node) -> list[Node]:
@@ -136,23 +116,15 @@ def sign_change(
     return best
 
 
-def divide_step(led: Parametrization, place: int, a: Node, b: Node) -> list[Node]:
+def divide_step(
+    led: Parametrization, place: int, a: Node, b: Node, depth: int = _DIVISIONS
+) -> list[Node]:
     """A step, divided so finely that a variable turns back at most once in each piece.
 
     The cubic through the variable's rates and their derivatives at both ends is compared with the
     rate halfway. The step is halved until that cubic, within its error, is zero at most once;
     reversals within the rounding of the rate are not seen.
     """
-    # the search for dead points divides the steps that the search for the closing point has divided
-    key = place, id(a), id(b)
-    if key not in led.divided_steps:
-        if len(led.divided_steps) >= _KEPT:
-            led.divided_steps.clear()
-        led.divided_steps[key] = _divide(led, place, a, b, _DIVISIONS)
-    return led.divided_steps[key]
-
-
-def _divide(led: Parametrization, place: int, a: Node, b: Node, depth: int) -> list[Node]:
     h = b.t - a.t
     ends = (a.first[place], a.second[place], b.first[place], b.second[place])
     low, high = reach(h, *ends)
@@ -167,8 +139,8 @@ def _divide(led: Parametrization, place: int, a: Node, b: Node, depth: int) -> l
     off = abs(float(middle.first[place]) - float(hermite(0.5, h, *ends)))
     if _zero_once(_SAFE * off + 8.0 * EPSILON * size, h, *ends):
         return [a, b]
-    left = _divide(led, place, a, middle, depth - 1)
-    return [*left, *_divide(led, place, middle, b, depth - 1)[1:]]
+    left = divide_step(led, place, a, middle, depth - 1)
+    return [*left, *divide_step(led, place, middle, b, depth - 1)[1:]]
 
 
 def reach(h: float, v0: float, d0: float, v1: float, d1: float) -> tuple[float, float]:
@@ -302,24 +274,9 @@ class StartingValue:
         """
         place = led.place(self.leads.parameter)
         value, low, high = passed
-        best: Node | None = None
-        off = _REACHED * max(1.0, abs(value))
-        for _ in range(60):
-            here = node_between(led, low, high, share_at(place, low, high, value))
-            if here is None or here.t in (low.t, high.t):
-                break
-            gap = abs(float(here.v[place]) - value)
-            if gap <= off:
-                best, off = here, gap
-            if gap <= 2.0 * EPSILON * max(1.0, abs(value)):
-                break
-            if (here.v[place] < value) == (low.v[place] < value):
-                low = here
-            else:
-                high = here
-        if best is None and abs(float(high.v[place]) - value) <= off:
-            best = high
-        return None if best is None else self._polish(led, best, value)
+        here = sign_change(led, low, high, lambda node: float(node.v[place]) - value)
+        reached = abs(float(here.v[place]) - value) <= _REACHED * max(1.0, abs(value))
+        return self._polish(led, here, value) if reached else None
 
     def _polish(self, led: Parametrization, here: Node, value: float) -> Node:
         """The position with exactly the value, if the parameter determines it well enough."""
@@ -336,17 +293,7 @@ class StartingValue:
 
 
 # ----------------------------------------------------------------------
-# The change points at which traced curves end: located, or known from curves before.
-
-
-_EARLY = 3e3  # nearness from which on a change point is looked for
-_NEAR = 0.05  # weighted: how near a node has to be to the known change point that its curve meets
-_TAYLOR = 0.01  # of the distance of both tangents there: how far from it Taylor's polynomial ends
-_NEXT_TO = 1e-4  # weighted: how near to it its Jacobian is looked at,
-_PART = 0.1  # or as this part of the way
-_SLOWEST = 0.2  # weighted rate of a leader that leads to a change point, to the fastest
-_RESTS = 1e-9  # weighted rate of a parameter that rests
-_GROWTH = 1.2  # the condition grows like 1/distance from a change point, to within this factor
+# The change points at which traced curves end.
 
 
 def crossing_beyond(
@@ -366,7 +313,6 @@ def crossing_beyond(
         directions=np.stack([led.whole(d) for d in found.directions]),
         bracket=(t - width, t + width),
         located=found.located,
-        clear=is_clear(led.solver, found),
     )
 
 
@@ -374,104 +320,6 @@ def tangents_apart(leads: Parametrizations, crossing: Crossing) -> float:
     """How far the tangents at a change point are apart at the weighted distance 1 from it."""
     one, other = crossing.directions / leads.scale
     return min(float(np.abs(one - sign * other).max()) for sign in (1.0, -1.0))
-
-
-class CrossingsAhead:
-    """The change points that a curve may end at without being followed up to them.
-
-    Parameters
-    ----------
-    known : sequence of Crossing
-        Those at which curves before have ended.
-
-    Attributes
-    ----------
-    avoided : int, optional
-        A leader with which none can be located. Where several blocks cross, it depends on the
-        leader whether the crossing of one can be located alone.
-    """
-
-    def __init__(self, leads: Parametrizations, known: Sequence[Crossing]) -> None:
-        self.leads, self.known = leads, known
-        self.avoided: int | None = None
-        self._tried: list[int] = []
-
-    def take_avoided(self) -> int | None:
-        """The leader to avoid, once."""
-        found, self.avoided = self.avoided, None
-        return found
-
-    def next_of(
-        self, led: Parametrization, here: Node, side: float, home: StartingValue
-    ) -> Crossing | None:
-        """That which the branch of a node meets next, as many whole turns away, unless its
-        parameter has its starting value before; ``side``: in which direction the leader moves.
-        """
-        known = [*self.known]
-        if here.nearness > _EARLY and led.lead not in self._tried:
-            self._tried.append(led.lead)
-            early = crossing_beyond(self.leads, led, here, side)
-            if early is not None:
-                known.append(early)
-            elif len(self._tried) == 1:
-                self.avoided = led.lead
-        leads, v = self.leads, led.whole(here.v)
-        for k in near(leads, [crossing.v for crossing in known], v, _NEAR):
-            turns = whole_turns(leads, known[k].v, v)
-            if known[k].clear and leads.repeats_after(turns):
-                crossing = _moved(known[k], turns, leads.parameter)
-                if _meets(leads, led, here, side, crossing):
-                    ends = sorted((float(v[leads.parameter]), crossing.t))
-                    return None if home.is_between(*ends) else crossing
-        return None
-
-
-def _moved(crossing: Crossing, turns: Array, parameter: int) -> Crossing:
-    """A change point some whole turns (N,) away."""
-    by = FULL_TURN * turns
-    low, high = (edge + float(by[parameter]) for edge in crossing.bracket)
-    v = crossing.v + by
-    return replace(crossing, t=float(v[parameter]), v=v, bracket=(low, high))
-
-
-def _meets(
-    leads: Parametrizations, led: Parametrization, here: Node, side: float, crossing: Crossing
-) -> bool:
-    """Whether the branch of a node meets a change point next.
-
-    Two curves pass a simple change point, and no others come near it. A branch is taken for one of
-    them if the node lies next to its tangent, far from the other one's, if Taylor's polynomial of
-    the node ends in the change point, and if J becomes singular there and not before.
-    """
-    weights, place = leads.scale[led.order], led.place(leads.parameter)
-    end, tangents = crossing.v[led.order], crossing.directions[:, led.order]
-    # blocks that take no part have no tangent there
-    moving, h = (tangents != 0.0).any(axis=0), float(end[-1]) - here.t
-    own = here.first / weights / np.abs(here.first / weights)[moving].max()
-    tangents = tangents * np.copysign(1.0, tangents[:, -1:])
-    off = np.abs(tangents / weights - own)[:, moving].max(axis=1)
-    tangent = tangents[int(off.argmin())]
-    if tangent[-1] < _SLOWEST * weights[-1] or h * side <= 0.0:
-        return False
-    slope, way = tangent / tangent[-1], abs(h / tangent[-1])
-    room = way * tangents_apart(leads, crossing)
-    beside = np.abs(here.v - (end - h * slope))[moving] / weights[moving]
-    missed = np.abs(predict(here, float(end[-1])) - end) / weights
-    if not (beside.max() <= CLOSER_TANGENT * room and missed.max() <= _TAYLOR * room):
-        return False
-    # the slope of the cubic through both ends
-    rise = 3.0 * (end[place] - here.v[place]) / h - here.first[place] - slope[place]
-    rates = np.array([here.first[place], rise, slope[place]]) / weights[place]
-    if not (rates > -_RESTS).all() and not (rates < _RESTS).all():
-        return False  # the parameter may turn back on the way
-    part = min(_NEXT_TO / way, _PART)
-    v = hermite(1.0 - part, h, here.v, here.first, end, slope)
-    back = predict(here, float(v[-1])) - predict(here, float(end[-1]))
-    v = np.where(moving, v, end + back)
-    node = node_at(led.solver, led.path, float(v[-1]), v)
-    growth = node.condition * part / here.condition
-    same = np.array_equal(node.orientation, here.orientation)
-    return same and 1.0 / _GROWTH <= growth <= _GROWTH
 
 
 # ----------------------------------------------------------------------
@@ -558,7 +406,6 @@ def trace(
     start: Array,
     heading: float | Array,
     options: CurveOptions | None = None,
-    known: Sequence[Crossing] | None = None,
 ) -> Curve:
     """Follow the curve through a position until it closes or ends.
 
@@ -569,14 +416,11 @@ def trace(
     heading : float or (N,)
         How the variables move at first, in direction; +1 for a growing parameter, -1 for a falling
         one.
-    known : sequence of Crossing, optional
-        Change points that need not be located again if the curve comes to one. By default all are
-        approached as far as rounding allows and located.
     """
     if isinstance(heading, float):
         side, heading = heading, np.zeros(len(start))
         heading[leads.parameter] = side
-    return _Tracer(leads, start, heading, options or CurveOptions(), known).run()
+    return _Tracer(leads, start, heading, options or CurveOptions()).run()
 
 
 class _Tracer:
@@ -588,12 +432,10 @@ class _Tracer:
         start: Array,
         heading: Array,
         options: CurveOptions,
-        known: Sequence[Crossing] | None,
     ) -> None:
         self.leads, self.start, self.options = leads, start, options
         self.here, self.heading = start, heading
         self.crossing: Crossing | None = None
-        self.ahead = None if known is None else CrossingsAhead(leads, known)
         self.legs: list[Leg] = []
         self.passes: list[tuple[int, Array]] = []
         self.proved_legs = 0
@@ -634,7 +476,7 @@ class _Tracer:
                     continue
                 if not self._passes_with_proof():
                     return self._end_trace(CircuitEnd.SINGULAR)
-            stuck, avoid = 0, None if self.ahead is None else self.ahead.take_avoided()
+            stuck, avoid = 0, None
             ending = self._ending()
             if ending is not None:
                 return self._end_trace(ending)
@@ -710,10 +552,6 @@ class _Tracer:
                 leaving = self.leaving if before is node else None
                 passed.extend(self.home.passes(led, before, after, leaving))
                 if passed or speed[place] * opt.slow >= speed.max():
-                    return True
-            if self.ahead is not None and not prove:
-                self.crossing = self.ahead.next_of(led, after, sign, self.home)
-                if self.crossing is not None or self.ahead.avoided is not None:
                     return True
             if bool((np.abs(after.v / weights)[~self.leads.is_angle[led.order]] > opt.far).any()):
                 return True

@@ -7,13 +7,14 @@ graph (Duff, Erisman & Reid, Direct Methods for Sparse Matrices, ch. 6; Dulmage 
 from __future__ import annotations
 
 from collections import deque
-from collections.abc import Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from functools import cached_property
+from itertools import count as counter
 
 import numpy as np
 
-from linkwork.core.foundation.arrays import Array, BoolArray, IndexArray
+from linkwork.core.foundation.arrays import Array, IndexArray
 from linkwork.core.numerics.block_solver import Block, BlockSolver
 
 
@@ -63,8 +64,10 @@ def block_form(pattern: Sequence[Sequence[int]], count: Sequence[int], unknowns:
     for row, used in enumerate(columns):
         for column in used:
             users[column].append(row)
-    over_rows, over_columns = _reach_from_rows(columns, row_of, column_of)
-    under_columns = _reach_from_columns(users, row_of, column_of)
+    unmatched = (row for row, column in enumerate(column_of) if column < 0)
+    over_rows, over_columns = _reach(unmatched, columns, row_of)
+    unmatched = (column for column, row in enumerate(row_of) if row < 0)
+    under_columns, _ = _reach(unmatched, users, column_of)
     graph: list[set[int]] = [set() for _ in pattern]
     for row, used in enumerate(columns):
         for column in used:
@@ -93,145 +96,96 @@ def block_form(pattern: Sequence[Sequence[int]], count: Sequence[int], unknowns:
 
 
 def _matching(columns: Sequence[Sequence[int]], unknowns: int) -> tuple[list[int], list[int]]:
-    """Hopcroft & Karp 1973: (row of each column, column of each row), -1 where unmatched."""
+    """A largest matching: (row of each column, column of each row), -1 where unmatched."""
     row_of = [-1] * unknowns
     column_of = [-1] * len(columns)
-    # rows with few unknowns first: the greedy matching leaves less to augment
+    # greedy start, rows with fewest entries first; nearly everything is matched by it
     for row in sorted(range(len(columns)), key=lambda r: len(columns[r])):
         for column in columns[row]:
             if row_of[column] < 0:
                 row_of[column], column_of[row] = row, column
                 break
-    while True:
-        level = _levels(columns, row_of, column_of)
-        if level is None:
-            return row_of, column_of
-        next_edge = [0] * len(columns)
-        for row in range(len(columns)):
-            if column_of[row] < 0:
-                _augment(row, columns, level, next_edge, row_of, column_of)
-
-
-def _levels(
-    columns: Sequence[Sequence[int]], row_of: list[int], column_of: list[int]
-) -> list[int] | None:
-    level = [0 if column < 0 else -1 for column in column_of]
-    queue = deque(row for row, k in enumerate(level) if k == 0)
-    reachable = False
-    while queue:
-        row = queue.popleft()
-        for column in columns[row]:
-            other = row_of[column]
-            if other < 0:
-                reachable = True
-            elif level[other] < 0:
-                level[other] = level[row] + 1
-                queue.append(other)
-    return level if reachable else None
+    for row in range(len(columns)):
+        if column_of[row] < 0:
+            _augment(row, columns, row_of, column_of)
+    return row_of, column_of
 
 
 def _augment(
-    root: int,
-    columns: Sequence[Sequence[int]],
-    level: list[int],
-    next_edge: list[int],
-    row_of: list[int],
-    column_of: list[int],
+    root: int, columns: Sequence[Sequence[int]], row_of: list[int], column_of: list[int]
 ) -> None:
-    path = [root]
-    while path:
-        row = path[-1]
-        if next_edge[row] == len(columns[row]):
-            level[row] = -1
-            path.pop()
-            continue
-        column = columns[row][next_edge[row]]
-        other = row_of[column]
-        if other < 0:
-            for r in reversed(path):
-                taken = columns[r][next_edge[r]]
-                row_of[taken], column_of[r] = r, taken
-            return
-        if level[other] == level[row] + 1 and next_edge[other] < len(columns[other]):
-            path.append(other)
-        else:
-            next_edge[row] += 1
-
-
-def _reach_from_rows(
-    columns: Sequence[Sequence[int]], row_of: list[int], column_of: list[int]
-) -> tuple[set[int], set[int]]:
-    """Rows and columns on alternating paths from unmatched rows: the overdetermined part."""
-    rows = {row for row, column in enumerate(column_of) if column < 0}
-    found: set[int] = set()
-    queue = deque(rows)
+    """Match one more row by the shortest alternating path to a free column, if there is one."""
+    came: dict[int, int] = {}  # the row from which a column was reached
+    queue = deque([root])
     while queue:
-        for column in columns[queue.popleft()]:
-            if column in found:
+        row = queue.popleft()
+        for column in columns[row]:
+            if column in came:
                 continue
-            found.add(column)
-            other = row_of[column]
-            if other >= 0 and other not in rows:
-                rows.add(other)
-                queue.append(other)
-    return rows, found
+            came[column] = row
+            if row_of[column] >= 0:
+                queue.append(row_of[column])
+                continue
+            while column >= 0:
+                row = came[column]
+                row_of[column], column, column_of[row] = row, column_of[row], column
+            return
 
 
-def _reach_from_columns(
-    users: Sequence[Sequence[int]], row_of: list[int], column_of: list[int]
-) -> set[int]:
-    """Columns on alternating paths from unmatched columns: the underdetermined part."""
-    found = {column for column, row in enumerate(row_of) if row < 0}
+def _reach(
+    begin: Iterable[int], neighbours: Sequence[Sequence[int]], partner: Sequence[int]
+) -> tuple[set[int], set[int]]:
+    """What alternating paths reach: on the side of their beginnings, and on the other side.
+
+    ``partner``: the matched one of each on the other side, -1 where there is none.
+    """
+    found = set(begin)
+    across: set[int] = set()
     queue = deque(found)
     while queue:
-        for row in users[queue.popleft()]:
-            other = column_of[row]
-            if other >= 0 and other not in found:
-                found.add(other)
-                queue.append(other)
-    return found
+        for there in neighbours[queue.popleft()]:
+            back = partner[there]
+            if there not in across and back >= 0 and back not in found:
+                found.add(back)
+                queue.append(back)
+            across.add(there)
+    return found, across
 
 
 def _strong_components(graph: Sequence[set[int]]) -> list[list[int]]:
     """Tarjan 1972, without recursion; a component comes after those it depends on."""
-    index = [-1] * len(graph)
-    low = [0] * len(graph)
-    on_stack = [False] * len(graph)
+    unseen, finished = -1, len(graph)
+    index = [unseen] * len(graph)
+    low = [unseen] * len(graph)
     stack: list[int] = []
+    work: list[tuple[int, Iterator[int]]] = []
     found: list[list[int]] = []
-    counter = 0
+    numbers = counter()
+
+    def enter(node: int) -> None:
+        index[node] = low[node] = next(numbers)
+        stack.append(node)
+        work.append((node, iter(sorted(graph[node]))))
+
     for root in range(len(graph)):
-        if index[root] >= 0:
-            continue
-        work = [(root, iter(sorted(graph[root])))]
-        index[root] = low[root] = counter
-        counter += 1
-        stack.append(root)
-        on_stack[root] = True
+        if index[root] == unseen:
+            enter(root)
         while work:
             node, successors = work[-1]
             for following in successors:
-                if index[following] < 0:
-                    index[following] = low[following] = counter
-                    counter += 1
-                    stack.append(following)
-                    on_stack[following] = True
-                    work.append((following, iter(sorted(graph[following]))))
+                if index[following] == unseen:
+                    enter(following)
                     break
-                if on_stack[following]:
-                    low[node] = min(low[node], index[following])
+                low[node] = min(low[node], index[following])
             else:
                 work.pop()
                 if work:
                     low[work[-1][0]] = min(low[work[-1][0]], low[node])
                 if low[node] == index[node]:
                     component: list[int] = []
-                    while True:
-                        member = stack.pop()
-                        on_stack[member] = False
-                        component.append(member)
-                        if member == node:
-                            break
+                    while node not in component[-1:]:
+                        component.append(stack.pop())
+                        index[component[-1]] = finished
                     found.append(component)
     return found
 
@@ -297,41 +251,11 @@ class JoinedBlocks:
         """(N,)."""
         return self.solver.variable_scale[self.order]
 
-    @property
-    def is_angle(self) -> BoolArray:
-        """(N,)."""
-        found = np.zeros(self.solver.variables, dtype=bool)
-        for block in self.blocks:
-            found[block.variables] |= block.system.is_angle
-        return found[self.order]
-
-    @property
-    def single(self) -> None:
-        """The blocks are joined as arrays only."""
-
     def _whole(self, v: Array) -> Array:
+        """Variables (B, N) of this system's order in that of the whole."""
         whole = np.zeros((len(v), self.solver.variables))
         whole[:, self.order] = v
         return whole
-
-    def residual(self, v: Array) -> Array:
-        """F, (B, n)."""
-        whole = self._whole(v)
-        parts = [block.system.residual(whole[:, block.variables]) for block in self.blocks]
-        return np.concatenate(parts, axis=1)
-
-    def exact_residual(self, v: Array) -> tuple[Array, Array]:
-        """F at one position v (N,), (n,), with as little rounding as the equations allow, and a
-        bound of its error.
-        """
-        whole = self._whole(v[None, :])[0]
-        parts = [block.system.exact_residual(whole[block.variables]) for block in self.blocks]
-        values, errors = zip(*parts, strict=True)
-        return np.concatenate(values), np.concatenate(errors)
-
-    def jacobian(self, v: Array) -> Array:
-        """dF/dv, (B, n, N)."""
-        return self.residual_and_jacobian(v)[1]
 
     def residual_and_jacobian(self, v: Array) -> tuple[Array, Array]:
         """F, (B, n), and dF/dv, (B, n, N)."""
@@ -350,17 +274,6 @@ class JoinedBlocks:
             row += f.shape[1]
         return np.concatenate(residual, axis=1), jacobian
 
-    def second_directional_derivative(self, v: Array, d: Array) -> Array:
-        """D²F[d, d], (B, n)."""
-        whole, direction = self._whole(v), self._whole(d)
-        parts = [
-            block.system.second_directional_derivative(
-                whole[:, block.variables], direction[:, block.variables]
-            )
-            for block in self.blocks
-        ]
-        return np.concatenate(parts, axis=1)
-
     def hessians(self, v: Array, weights: Array) -> Array:
         """Second derivatives of K sums of equations, (K, N, N), with ``weights`` (K, n)."""
         whole, order = self._whole(v[None, :])[0], self.order
@@ -373,12 +286,3 @@ class JoinedBlocks:
             )
             row += n
         return found[:, order[:, None], order]
-
-    def mixed(self, v: Array, a: Array, b: Array) -> Array:
-        """D²F[a, b], (B, n), by polarisation."""
-        # eq. (5)
-        half: Array = 0.25 * (
-            self.second_directional_derivative(v, a + b)
-            - self.second_directional_derivative(v, a - b)
-        )
-        return half

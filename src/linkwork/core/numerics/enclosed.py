@@ -19,6 +19,7 @@ import numpy as np
 
 from linkwork.core.foundation.arrays import Array, BoolArray, IndexArray, matrix_vector
 from linkwork.core.foundation.rounding import PROOF_SLACK, UNIT_ROUNDOFF
+from linkwork.core.numerics.block_solver import Block
 from linkwork.core.numerics.kantorovich import Radii
 from linkwork.core.numerics.system import System
 
@@ -59,8 +60,11 @@ class Enclosed:
         lost = (self.matrix.shape[1] + 4) * UNIT_ROUNDOFF * np.abs(centre)
         return self.matrix @ centre, PROOF_SLACK * (size @ (spread + lost))
 
-    def radii(self, known: Array) -> Radii:
-        """Existence and uniqueness for known variables that may be off by ``known`` (B, p)."""
+    def radii(self, block: Block, known: Array, *, fitted: bool = False) -> Radii:
+        """Existence and uniqueness for known variables that may be off by ``known`` (B, p).
+
+        The boxes are of all sizes, so no weights are fitted.
+        """
         count, n = self.matrix.shape[:2]
         weights = self.system.variable_scale[:n]
         with np.errstate(all="ignore"):

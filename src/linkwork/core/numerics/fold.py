@@ -9,19 +9,11 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Protocol
 
 import numpy as np
 
 from linkwork.core.foundation.arrays import Array
 from linkwork.core.numerics.system import SmallSystem
-
-
-class Bending(SmallSystem, Protocol):
-    """Equations that also know mixed second derivatives."""
-
-    def mixed(self, v: Array, a: Array, b: Array) -> Array:
-        """D²F[a, b], (B, m)."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -33,10 +25,10 @@ class FoldFamily:
     ``size``: the natural size of a change of p.
     """
 
-    at: Callable[[float], Bending]
+    at: Callable[[float], SmallSystem]
     inputs: Array
-    low: Bending
-    high: Bending
+    low: SmallSystem
+    high: SmallSystem
     step: float
     size: float
 
@@ -53,12 +45,10 @@ class Fold:
     checked: bool
 
 
-_MOST_STEPS = 40
-_MOST_WRITTEN = 15  # with equations written again for each, which takes far longer
+_MOST_STEPS = 40  # of Newton-Raphson to a solution next to the fold
+_MOST_WRITTEN = 15  # steps to the fold, each with equations written again
 _LONGEST = 0.5  # weighted: a step is shortened as a whole
 _STILL = 1e-13
-_NEAR = 1e-6  # of a fold of the linear family: the last steps are those of the family itself
-_LINEAR = 1e-7  # relative difference of a family that is not linear; its derivatives have 1e-10
 _FURTHER = 1e-6  # of the parameter's size: how far beyond the fold a solution is sought
 _CLOSED = 1e-10
 _SOLVED = 1e-13
@@ -67,10 +57,10 @@ _SOLVED = 1e-13
 class _At:
     """The scaled system and its parameter's derivatives at one (x, p)."""
 
-    def __init__(self, family: FoldFamily, x: Array, system: Bending) -> None:
+    def __init__(self, family: FoldFamily, x: Array, system: SmallSystem) -> None:
         self.system, inputs = system, family.inputs
         n = self.n = self.system.unknowns
-        self.weights = np.concatenate([self.system.variable_scale[:n], np.zeros(len(inputs))])
+        self.weights = self.system.variable_scale[:n]
         self.scale = self.system.equation_scale
         self.v = np.concatenate([x, inputs])
         self.f, self.j = self._scale(self.system)
@@ -79,18 +69,15 @@ class _At:
         left, _, right = np.linalg.svd(self.j)
         self.w, self.z = left[:, -1], right[-1]
 
-    def _scale(self, system: Bending) -> tuple[Array, Array]:
+    def _scale(self, system: SmallSystem) -> tuple[Array, Array]:
         f, j = system.residual_and_jacobian(self.v[None, :])
-        return f[0] / self.scale, j[0, :, : self.n] * self.weights[: self.n] / self.scale[:, None]
+        return f[0] / self.scale, j[0, :, : self.n] * self.weights / self.scale[:, None]
 
-    def bend(self, directions: Array) -> Array:
-        """wᵀ D²F[z, d] of several directions d (B, n), all scaled."""
-        inputs = np.zeros((len(directions), len(self.v) - self.n))
-        b = np.concatenate([directions, inputs], axis=1) * self.weights
-        a = np.zeros_like(b)
-        a[:, : self.n] = self.z * self.weights[: self.n]
-        bent: Array = (self.system.mixed(np.tile(self.v, (len(b), 1)), a, b) / self.scale) @ self.w
-        return bent
+    def bend(self) -> Array:
+        """wᵀ D²F[z, d] for every unit direction d, (n,), all scaled."""
+        n, weights = self.n, self.weights
+        bent: Array = self.system.hessians(self.v, (self.w / self.scale)[None, :])[0, :n, :n]
+        return weights * (bent @ (weights * self.z))
 
     def correction(self) -> Array:
         """The Newton step of (x / weights, p) for F = 0 and g = 0, where g = 0 when J is singular.
@@ -105,36 +92,10 @@ class _At:
         self.z, self.w = right[:n], left[:n]
         whole = np.zeros((n + 1, n + 1))
         whole[:n, :n], whole[:n, n] = self.j, self.f_p
-        whole[n, :n] = -self.bend(np.eye(n))  # eq. (43): dg
+        whole[n, :n] = -self.bend()  # eq. (43): dg
         whole[n, n] = -self.w @ self.j_p @ self.z
         step: Array = -np.linalg.solve(whole, np.concatenate([self.f, [right[n]]]))
         return step
-
-
-class _Linear:
-    """The system F + Δp F_p of a family, F at one p."""
-
-    def __init__(self, family: FoldFamily, system: Bending, change: float) -> None:
-        self.system, self.ends = system, (family.low, family.high)
-        self.share = change / family.step
-        self.unknowns = system.unknowns
-        self.variable_scale, self.equation_scale = system.variable_scale, system.equation_scale
-
-    def residual_and_jacobian(self, v: Array) -> tuple[Array, Array]:
-        systems = (self.system, *self.ends)
-        (f, j), low, high = (system.residual_and_jacobian(v) for system in systems)
-        return f + self.share * (high[0] - low[0]), j + self.share * (high[1] - low[1])
-
-    def mixed(self, v: Array, a: Array, b: Array) -> Array:
-        here, low, high = (system.mixed(v, a, b) for system in (self.system, *self.ends))
-        return here + self.share * (high - low)
-
-    def is_like(self, system: Bending, v: Array) -> bool:
-        """Whether the residual of another system is the same at v (N,)."""
-        f, other = (
-            s.residual_and_jacobian(v[None, :])[0] / self.equation_scale for s in (self, system)
-        )
-        return bool(np.abs(f - other).max() <= _LINEAR * max(1.0, np.abs(other).max()))
 
 
 def locate_fold(family: FoldFamily, x: Array, p: float) -> Fold | None:
@@ -164,40 +125,26 @@ def locate_fold(family: FoldFamily, x: Array, p: float) -> Fold | None:
             if abs(slope) < 1e-9:
                 return None
             p -= float(here.w @ here.f) / slope * family.size
-            found: tuple[Array, float] | None = (x, p)
-
-            def linear(p: float) -> _Linear:
-                return _Linear(family, here.system, p - begin)
-
-            # equations need not be written again for every p of a linear family
-            if linear(p).is_like(family.at(p), here.v):
-                found = _refine_fold(family, linear, (x, p), _MOST_STEPS, _NEAR)
-            found = found and _refine_fold(family, family.at, found, _MOST_WRITTEN, _STILL)
+            found = _refine_fold(family, (x, p))
             return None if found is None else _opening(family, begin, *found)
         except (np.linalg.LinAlgError, ValueError):
             return None
 
 
-def _refine_fold(
-    family: FoldFamily,
-    at: Callable[[float], Bending],
-    begin: tuple[Array, float],
-    most: int,
-    still: float,
-) -> tuple[Array, float] | None:
-    """Newton-Raphson on the fold of the systems ``at`` p, until its steps are ``still``."""
+def _refine_fold(family: FoldFamily, begin: tuple[Array, float]) -> tuple[Array, float] | None:
+    """Newton-Raphson on the fold, until its steps are nearly zero."""
     x, p = begin
-    for _ in range(most):
-        here = _At(family, x, at(p))
+    for _ in range(_MOST_WRITTEN):
+        here = _At(family, x, family.at(p))
         step = here.correction()
         if not np.isfinite(step).all():
             return None
         size = max(float(np.abs(step[:-1]).max()), abs(float(step[-1])) / family.size)
         # far from the fold the Newton step of a singular system is too long
         step *= min(1.0, _LONGEST / size) if size else 1.0
-        x = x + step[:-1] * here.weights[: here.n]
+        x = x + step[:-1] * here.weights
         p += float(step[-1])
-        if size <= still * max(1.0, abs(p) / family.size):
+        if size <= _STILL * max(1.0, abs(p) / family.size):
             break
     else:
         if size > 1e-9:
@@ -212,17 +159,17 @@ def _opening(family: FoldFamily, begin: float, x: Array, p: float) -> Fold | Non
         return None
     # solutions have to exist on the side that leads away from the present length
     towards = np.sign(p - begin) or 1.0
-    ratio = -2.0 * np.float64(here.w @ here.f_p) / here.bend(here.z[None, :])[0]  # eq. (44)
+    ratio = -2.0 * np.float64(here.w @ here.f_p) / (here.bend() @ here.z)  # eq. (44)
     if not np.isfinite(ratio) or ratio * towards <= 0.0:
         return None
     further = towards * _FURTHER * family.size
     system, inputs = family.at(p + further), family.inputs
-    start = x + np.sqrt(ratio * further) * here.z * here.weights[: here.n]  # eq. (44)
+    start = x + np.sqrt(ratio * further) * here.z * here.weights  # eq. (44)
     found = _is_solved_from(system, np.concatenate([start, inputs]))
     return Fold(p=p, x=x, opens=float(towards), checked=found)
 
 
-def _is_solved_from(system: Bending, v: Array) -> bool:
+def _is_solved_from(system: SmallSystem, v: Array) -> bool:
     """Whether Newton-Raphson from v (N,) finds a solution."""
     n, v = system.unknowns, v.copy()
     for _ in range(_MOST_STEPS):

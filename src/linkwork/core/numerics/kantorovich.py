@@ -27,8 +27,9 @@ import numpy as np
 
 from linkwork.core.foundation.arrays import Array, BoolArray, IndexArray, matrix_vector
 from linkwork.core.foundation.rounding import PROOF_SLACK, UNIT_ROUNDOFF
-from linkwork.core.numerics.block_solver import BlockSolver, Linearised
-from linkwork.core.numerics.system import System
+from linkwork.core.numerics.block_solver import Block, BlockSolver, Linearised
+from linkwork.core.numerics.system import Columns, System
+from linkwork.core.table.curvature import Curvature
 
 # Rounds in which weights are fitted; empirical, any number near it serves. The bounds are computed
 # for the weights found, so that too few rounds can lose a proof, but never give a wrong one.
@@ -55,8 +56,7 @@ class Bounds:
     omega_slope: Array
 
 
-@dataclass(frozen=True, eq=False)
-class Radii:
+class Radii(Columns):
     """Results of proofs, (B,): ``holds``; a solution within ``existence_radius``, no other within
     ``uniqueness_radius``.
 
@@ -80,20 +80,15 @@ class Expansion:
 
     ``residual`` (B, n): |A F| with its rounding and that of printing the unknowns. ``defect``
     (B, n, n): |I - A J|. ``slope`` (B, n, p): |A F_k| by the known variables; ``lines`` (B, n, p):
-    the part of linear rows. ``phase`` (B, n, G), ``slide`` (B, n, P) and the rest: see
-    :class:`Curvature`; rows whose phases are not those of loops are among ``lines``.
+    the part of linear rows. ``bend``: its second derivatives; rows whose phases are not those of
+    loops are among ``lines``.
     """
 
     residual: Array
     defect: Array
     slope: Array
     lines: Array
-    loop_phases: int
-    phase: Array
-    slide: Array
-    weights: Array
-    pair_length: IndexArray
-    pair_group: IndexArray
+    bend: Curvature
 
     def take(self, index: IndexArray | slice) -> Expansion:
         """At some of the positions, in the order of ``index``."""
@@ -103,9 +98,31 @@ class Expansion:
             defect=self.defect[index],
             slope=self.slope[index],
             lines=self.lines[index],
-            phase=self.phase[index],
-            slide=self.slide[index],
+            bend=replace(self.bend, phase=self.bend.phase[index], slide=self.bend.slide[index]),
         )
+
+    def radii(self, block: Block, known: Array, *, fitted: bool = False) -> Radii:
+        """The proofs for known variables that may be off by ``known`` (B, p).
+
+        In the block's own weights, or in fitted ones.
+        """
+        weights = block.system.variable_scale[: len(block.unknowns)]
+        with np.errstate(all="ignore"):
+            majorant = Majorant(self, known)
+            if fitted:
+                weights = majorant.fit_weights(weights)
+            return weighted_radii(majorant.bounds(weights), weights)
+
+    def slopes_change(self, a: Array, b: Array) -> Array:
+        """|A (J(v + a) - J(v)) b| at most, (B, n), for a and b of known size (B, N)."""
+        bend = self.bend
+        turned, turning = a @ bend.weights, b @ bend.weights
+        rows = matrix_vector(bend.phase, turned * turning)
+        if bend.pair_length.size:
+            longer, slides = a[:, bend.pair_length], b[:, bend.pair_length]
+            by = turned[:, bend.pair_group], turning[:, bend.pair_group]
+            rows += matrix_vector(bend.slide, longer * by[1] + slides * by[0])
+        return rows
 
 
 def expansion(
@@ -143,12 +160,7 @@ def expansion(
         defect=np.abs(np.eye(n) - matrix @ jacobian[:, :, :n]) + loss[:, :, :n],  # eq. (25): Z0
         slope=np.abs(matrix @ slope) + loss[:, :, n:],
         lines=lines + size[:, :, rest] @ bend.jacobian_rounding[:, rest, n:],
-        loop_phases=bend.loop_phases,
-        phase=bend.phase,
-        slide=bend.slide,
-        weights=bend.weights,
-        pair_length=bend.pair_length,
-        pair_group=bend.pair_group,
+        bend=bend,
     )
 
 
@@ -170,19 +182,19 @@ class Majorant:
     """
 
     def __init__(self, at: Expansion, known: Array) -> None:
-        n = at.residual.shape[1]
-        self.defect, self.turning = at.defect, at.weights[:n]
-        self.turned = known @ at.weights[n:]  # (B, G): how far the known angles turn each phase
+        n, bend = at.residual.shape[1], at.bend
+        self.defect, self.turning = at.defect, bend.weights[:n]
+        self.turned = known @ bend.weights[n:]  # (B, G): how far the known angles turn each phase
         # terms with a variable length, split into those with an unknown and with a known length
-        mine = np.flatnonzero(at.pair_length < n)
-        given = np.flatnonzero(at.pair_length >= n)
-        self.lengths, self.free_group = at.pair_length[mine], at.pair_group[mine]
-        self.held_group = at.pair_group[given]
-        self.spread = known[:, at.pair_length[given] - n]
+        mine = np.flatnonzero(bend.pair_length < n)
+        given = np.flatnonzero(bend.pair_length >= n)
+        self.lengths, self.free_group = bend.pair_length[mine], bend.pair_group[mine]
+        self.held_group = bend.pair_group[given]
+        self.spread = known[:, bend.pair_length[given] - n]
         #: |A D²F| of every phase, of pairs with an unknown length, of those with a known one.
-        self.bent = at.phase
-        if len(at.pair_length):
-            self.bent = np.concatenate([at.phase, at.slide[:, :, [*mine, *given]]], axis=2)
+        self.bent = bend.phase
+        if len(bend.pair_length):
+            self.bent = np.concatenate([bend.phase, bend.slide[:, :, [*mine, *given]]], axis=2)
         self.y = at.residual
         if known.any():
             self.y = at.residual + self._shift(at, known)
@@ -194,7 +206,7 @@ class Majorant:
         none = np.zeros((len(known), len(self.lengths)))
         by_slope = [square, none, self.spread * self.turned[:, self.held_group]]
         # a law's phase is a second derivative, no bound of the change itself
-        loops = at.loop_phases
+        loops = at.bend.loop_phases
         as_a_whole = [self.turned[:, :loops], square[:, loops:], none, self.spread]
         return np.minimum(
             matrix_vector(at.slope, known) + matrix_vector(self.bent, np.hstack(by_slope)),
@@ -354,9 +366,10 @@ def tangent_errors(
 
 def _remainder(at: Expansion, bound: Array) -> Array:
     """What the second derivatives of a block change at most in boxes, (B, n)."""
-    turned = bound @ at.weights
-    found = matrix_vector(at.phase, 0.5 * turned**2)
-    if len(at.pair_length):
-        longer, own = bound[:, at.pair_length], turned[:, at.pair_group]
-        found += matrix_vector(at.slide, longer * own * (1.0 + 0.5 * own))
+    bend = at.bend
+    turned = bound @ bend.weights
+    found = matrix_vector(bend.phase, 0.5 * turned**2)
+    if len(bend.pair_length):
+        longer, own = bound[:, bend.pair_length], turned[:, bend.pair_group]
+        found += matrix_vector(bend.slide, longer * own * (1.0 + 0.5 * own))
     return found

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from typing import Protocol
 
 import numpy as np
@@ -16,7 +16,6 @@ from linkwork.core.numerics.branch_tracking import InputPath, Node, node_at
 from linkwork.core.numerics.newton import sharp
 from linkwork.core.numerics.position_proof import expansions, prove, reach
 
-_KEPT = 64  # nodes: a place where curves begin is looked at several times
 _COINCIDE = 1e-6  # weighted: rounding of places that are ill-conditioned
 _NEAR = 1e-3  # weighted: positions further apart are not looked at
 _ON_VALUE = 1e-9  # of the parameter, weighted: positions at different values are different
@@ -28,15 +27,11 @@ class Parametrization:
     """The equations with the variable ``lead`` known.
 
     ``order`` (N,): the variables of the whole in the solver's order, the leading one last.
-    ``divided_steps``: the pieces of steps, both ends among them, by a variable's place and the
-    identities of these ends.
     """
 
     lead: int
     solver: BlockSolver
     order: IndexArray
-    divided_steps: dict[tuple[int, int, int], list[Node]] = field(default_factory=dict, repr=False)
-    _nodes: dict[bytes, Node] = field(default_factory=dict, repr=False)
 
     @property
     def path(self) -> InputPath:
@@ -51,14 +46,7 @@ class Parametrization:
 
     def node(self, v: Array) -> Node:
         """The node of a position (N,) given in the whole's order."""
-        key = v.tobytes()
-        found = self._nodes.get(key)
-        if found is None:
-            found = node_at(self.solver, self.path, float(v[self.lead]), v[self.order])
-            if len(self._nodes) >= _KEPT:
-                self._nodes.clear()
-            self._nodes[key] = found
-        return found
+        return node_at(self.solver, self.path, float(v[self.lead]), v[self.order])
 
     def place(self, variable: int) -> int:
         """The index of a variable of the whole in the solver's order."""
@@ -167,7 +155,7 @@ def same_position(leads: Parametrizations, a: Array, b: Array, gained: Array | N
             errors = second.error_bound[0, :-1]
             if (off[:-1] + errors < first.isolation_radius[0]).all():
                 return True
-            if (off[:-1] > errors + first.error_bound[0]).any():
+            if (off[:-1] > errors + first.error_bound[0, :-1]).any():
                 return False
     rates = own.solver.rates(found, own.path.rate)
     allowed = min(_COINCIDE, _ROUNDINGS * EPSILON * float(rates.condition.max()) * size)

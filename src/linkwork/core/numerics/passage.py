@@ -19,7 +19,7 @@ import numpy as np
 from linkwork.core.foundation.arrays import Array, IndexArray
 from linkwork.core.foundation.rounding import CLOSER_TANGENT
 from linkwork.core.foundation.statuses import CONVERGED
-from linkwork.core.numerics.block_solver import Block, BlockSolver, linearise_block
+from linkwork.core.numerics.block_solver import Block, BlockSolver
 from linkwork.core.numerics.branch_tracking import InputPath, Node, follow, node_at
 from linkwork.core.numerics.change_point import (
     ChangePoint,
@@ -30,7 +30,6 @@ from linkwork.core.numerics.change_point import (
     locate_crossing,
     tangents_behind_kink,
 )
-from linkwork.core.numerics.newton import newton
 
 # of the path's size, to both sides, in this order; the last ones for blocks that are driven slowly
 _HALVES = (1e-2, 3e-3, 1e-3, 1e-4, 1e-5, 1e-6, 3e-2, 1e-1)
@@ -248,27 +247,15 @@ class _Walk:
 
     def _step(self, block: Block, t: float, x: Array, towards: float) -> tuple[_Step, int, float]:
         """A solved position with its rates, the sign of det J, and the condition of J."""
-        n, system = len(block.unknowns), block.system
         y, y1, y2 = self._known(block, t, towards)
-        v = np.concatenate([x, y])
-        whole = np.zeros(self.solver.variables)
-        whole[block.variables] = v
-        part = linearise_block(block, whole[None, :])
-        slope, inverse = part.jacobian[0], part.inverse[0]
-        first = -inverse @ (slope[:, n:] @ y1)  # eq. (11)
-        bend = system.second_directional_derivative(
-            v[None, :], np.concatenate([first, y1])[None, :]
-        )[0]
-        second = -inverse @ (bend + slope[:, n:] @ y2)  # eq. (12)
-        w, s = system.variable_scale[:n], system.equation_scale
-        forward = np.abs(slope[:, :n] * w / s[:, None]).sum(axis=1).max(initial=0.0)
-        backward = np.abs(inverse * s / w[:, None]).sum(axis=1).max(initial=0.0)
-        condition = float(forward * backward)  # eq. (14)
-        return _Step(t=t, x=x, first=first, second=second), int(part.sign[0]), condition
+        rates = block.alone.rates(np.append(x, y)[None, :], y1, y2)
+        first, second = (part[0, : len(x)] for part in (rates.first, rates.second))
+        step = _Step(t=t, x=x, first=first, second=second)
+        return step, int(rates.orientation[0, 0]), float(rates.condition[0])
 
     def _solve(self, block: Block, t: float, guess: Array, towards: float) -> Array | None:
         v = np.concatenate([guess, self._known(block, t, towards)[0]])
-        done = newton(block.system, v[None, :], self.options)
+        done = block.alone.solve(v[None, :], self.options)
         return done.v[0, : len(guess)] if done.status[0] == CONVERGED else None
 
     def _follow(self, block: Block, begin: float, end: float, x: Array) -> list[_Step] | None:

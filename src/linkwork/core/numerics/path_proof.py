@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from itertools import pairwise
 
@@ -31,7 +31,6 @@ _HALVINGS = 45  # of one step, at most
 _QUICK = 5  # before weights are fitted to it
 _LANES = 1024  # steps halved together
 _HALFWAY = np.array([0.5])
-_SHORTER = 0.5 ** np.arange(1, 6)  # parts of a step that are tried before it is divided
 
 
 class Allowance:
@@ -90,36 +89,6 @@ def prove_steps(
     reached = reach(solver, start.v, input_radius, places)
     ends = start.v, goal.v, reached, near
     return steps_connected(*ends), steps_disproved(*ends)
-
-
-def prove_backwards(
-    solver: BlockSolver, steps: OpenSteps, places: Sequence[Place]
-) -> tuple[BoolArray, BoolArray, CountArray]:
-    """Whole steps of a path from their far ends, as :func:`prove_steps`; and into how many parts
-    each has to be divided at least, so that each half of a part is as short as what is proved from
-    both ends, (L,).
-
-    ``places``: of the path's points. All this at once: a proof takes as long for one step as for
-    many.
-    """
-    count, n = len(steps.owner), solver.unknowns
-    lanes, shorter = np.repeat(np.arange(count), len(_SHORTER)), np.tile(_SHORTER, count)
-    whole, h = np.abs(steps.right.v - steps.left.v)[:, n:], steps.right.t - steps.left.t
-    # the factor covers the rounding of the difference
-    far = whole * (1.0 + 8.0 * UNIT_ROUNDOFF) + steps.left.input_radius + steps.right.input_radius
-    few = whole[lanes] * shorter[:, None]
-    points = SolvedRows.concatenate([steps.right, steps.left.take(lanes), steps.right.take(lanes)])
-    at = np.concatenate([steps.owner + 1, steps.owner[lanes], steps.owner[lanes] + 1])
-    reached = reach(solver, points.v, np.concatenate([far, few, few]), take_expansions(places, at))
-    ends = steps.right.v, steps.left.v, reached.take(slice(None, count)), steps.near
-    change = np.concatenate([h[lanes] * shorter, -h[lanes] * shorter])[:, None]
-    rest = slice(count, None)
-    moved = np.abs(change * points.first[rest] + 0.5 * change**2 * points.second[rest])  # eq. (17)
-    inside = moved[:, :n] < reached.isolation_radius[rest]  # eq. (33)
-    held = (reached.holds[rest] & inside.all(axis=1)).reshape(2, count, len(_SHORTER))
-    widest = np.where(held, _SHORTER, 0.0).max(axis=2).min(axis=0)
-    parts = np.where(widest > 0.0, 0.5 / np.maximum(widest, 1e-9), 0.0)
-    return steps_connected(*ends), steps_disproved(*ends), parts.astype(np.int64)
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -199,56 +168,6 @@ class Halving:
                 return
             queue = self._halve(queue.take(slice(None, now))).with_(queue.take(slice(now, None)))
 
-    def divide(self, queue: OpenSteps, parts: CountArray, allowance: Allowance) -> OpenSteps:
-        """Divide steps into parts (L,) at once; return what is not proved of them.
-
-        Every second of the positions in between proves the way to both its neighbours. A step
-        stays as it is where one of them is not found, or not proved.
-        """
-        whole = parts < 1
-        if whole.all():
-            return queue
-        lanes = queue.take(np.flatnonzero(~whole))
-        inside = (2 * parts[~whole] - 1).astype(np.intp)  # indices have 32 bits in a browser
-        wanted = int(inside.sum())
-        if wanted > allowance.left:
-            return queue
-        allowance.take(wanted)
-        lane = np.repeat(np.arange(len(inside)), inside)
-        place = (
-            np.arange(len(lane)) - (np.cumsum(inside) - inside)[lane] + 1
-        )  # 1, 2, … between the ends
-        left, right = lanes.left.take(lane), lanes.right.take(lane)
-        middle, found, places = _between(self.prover, left, right, place / (inside[lane] + 1))
-        proof = prove(self.prover.solver, middle.v, middle.input_radius, places)
-        points = SolvedRows.concatenate([middle, lanes.left, lanes.right])
-        count, behind = len(lane), place == inside[lane]
-        before = np.where(place == 1, count + lane, np.arange(count) - 1)
-        after = np.where(behind, count + len(inside) + lane, np.arange(count) + 1)
-        good = found & proof.holds & (points.t[before] < middle.t) & (middle.t < points.t[after])
-        kept = np.bincount(lane[~good], minlength=len(inside)) == 0
-        np.add.at(self.pieces, lanes.owner, inside)
-        odd = np.flatnonzero(kept[lane] & (place % 2 == 1))
-        error_bound = np.concatenate([proof.error_bound, lanes.near, lanes.near])
-        both, to = np.tile(odd, 2), np.concatenate([before[odd], after[odd]])
-        near = np.maximum(error_bound[both], error_bound[to])
-        start, goal = points.take(both), points.take(to)
-        held, apart = prove_steps(
-            self.prover.solver, start, goal, near, take_expansions(places, both)
-        )
-        self.lose(lanes.owner[lane[both[apart]]])
-        open_ = np.flatnonzero(~held)
-        down = np.arange(len(both)) < len(odd)
-        low, high = np.where(down, to, both)[open_], np.where(down, both, to)[open_]
-        rest = OpenSteps(
-            left=points.take(low),
-            right=points.take(high),
-            near=near[open_],
-            owner=lanes.owner[lane[both[open_]]],
-        )
-        undivided = np.concatenate([np.flatnonzero(whole), np.flatnonzero(~whole)[~kept]])
-        return queue.take(undivided).with_(rest)
-
     def of_use(self, queue: OpenSteps) -> OpenSteps:
         """The steps that may still be proved, nearest to their anchors first."""
         owner = queue.owner
@@ -327,7 +246,6 @@ def _between(
 
 _MOST = 30_000  # positions solved in between for the proof of one path
 _MOST_EACH = 8  # and this many more for each of its own positions
-_PIECE = 1024  # positions proved together: arrays that fit the cache
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -372,7 +290,6 @@ def prove_path(
     anchor: int | None = None,
     most: int | None = None,
     exact: bool = False,
-    progress: Callable[[float], None] | None = None,
 ) -> ProvenPath:
     """Prove every position and every step between neighbours.
 
@@ -388,8 +305,6 @@ def prove_path(
         number that grows with the path's own.
     exact : bool
         Take residuals that are rounded once: slower, for places where branches nearly cross.
-    progress : callable, optional
-        Called with the finished fraction.
 
     Notes
     -----
@@ -403,34 +318,8 @@ def prove_path(
             return few
     prover = Prover(solver, path, exact, fitted=exact or not solver.is_recorded)
     allowance = Allowance(_MOST + _MOST_EACH * count if most is None else most)
-    begins = list(range(0, max(count - 1, 1), _PIECE))
-    if anchor is not None:
-        # near the anchor first: beyond a step that is not proved no other one is of use
-        begins.sort(key=lambda begin: abs(begin + _PIECE // 2 - anchor))
-    found: dict[int, ProvenPath] = {}
-    for k, begin in enumerate(begins, start=1):
-        part = points.take(slice(begin, begin + _PIECE + 1))
-        inside = None if anchor is None else min(max(anchor - begin, 0), len(part.t) - 1)
-        strand = Strand(begin=0, end=len(part.t), anchor=inside)
-        found[begin] = _piece(prover, part, [strand], allowance)
-        if progress is not None:
-            progress(k / len(begins))
-    pieces = [found[begin] for begin in sorted(begins)]
-    if len(pieces) == 1:
-        return pieces[0]
-    # neighbouring pieces share one position
-    proofs = [pieces[0].position, *[_part(piece.position, slice(1, None)) for piece in pieces[1:]]]
-    return ProvenPath(
-        position=Proof(
-            holds=np.concatenate([p.holds for p in proofs]),
-            existence_radius=np.concatenate([p.existence_radius for p in proofs]),
-            uniqueness_radius=np.concatenate([p.uniqueness_radius for p in proofs]),
-            error_bound=np.concatenate([p.error_bound for p in proofs]),
-        ),
-        connected=np.concatenate([piece.connected for piece in pieces]),
-        pieces=np.concatenate([piece.pieces for piece in pieces]),
-        given_up=np.concatenate([piece.given_up for piece in pieces]),
-    )
+    strand = Strand(begin=0, end=count, anchor=anchor)
+    return _prove_strands(prover, points, [strand], allowance)
 
 
 def _prove_few(solver: BlockSolver, path: InputPath, points: SolvedRows) -> ProvenPath | None:
@@ -477,51 +366,26 @@ def prove_paths(
     fitted = not solver.is_recorded
     prover, allowance = Prover(solver, path, False, fitted=fitted), Allowance(most)
     prover = prover if halvings is None else replace(prover, halvings=halvings)
-    found: list[ProvenPath] = []
-    for some in _groups([len(points.t) for points in paths]):
-        strands, begin = [], 0
-        for k in some:
-            end = begin + len(paths[k].t)
-            strands.append(Strand(begin=begin, end=end, anchor=begin + anchors[k]))
-            begin = end
-        points = SolvedRows.concatenate([paths[k] for k in some])
-        whole = _piece(prover, points, strands, allowance)
-        for strand in strands:
-            steps = slice(strand.begin, strand.end - 1)
-            found.append(
-                ProvenPath(
-                    position=_part(whole.position, slice(strand.begin, strand.end)),
-                    connected=whole.connected[steps],
-                    pieces=whole.pieces[steps],
-                    given_up=whole.given_up[steps],
-                )
-            )
-    return found
+    if not paths:
+        return []
+    ends = np.cumsum([len(points.t) for points in paths]).tolist()
+    strands = [
+        Strand(begin=begin, end=end, anchor=begin + anchor)
+        for begin, end, anchor in zip([0, *ends], ends, anchors, strict=False)
+    ]
+    whole = _prove_strands(prover, SolvedRows.concatenate(paths), strands, allowance)
+    return [
+        ProvenPath(
+            position=whole.position.take(slice(strand.begin, strand.end)),
+            connected=whole.connected[strand.begin : strand.end - 1],
+            pieces=whole.pieces[strand.begin : strand.end - 1],
+            given_up=whole.given_up[strand.begin : strand.end - 1],
+        )
+        for strand in strands
+    ]
 
 
-def _groups(sizes: Sequence[int]) -> list[list[int]]:
-    """Consecutive numbers in groups whose sizes fit the cache."""
-    found: list[list[int]] = []
-    room = 0
-    for k, size in enumerate(sizes):
-        if size > room:
-            found.append([])
-            room = _PIECE
-        found[-1].append(k)
-        room -= size
-    return found
-
-
-def _part(p: Proof, rows: slice) -> Proof:
-    return Proof(
-        holds=p.holds[rows],
-        existence_radius=p.existence_radius[rows],
-        uniqueness_radius=p.uniqueness_radius[rows],
-        error_bound=p.error_bound[rows],
-    )
-
-
-def _piece(
+def _prove_strands(
     prover: Prover,
     points: SolvedRows,
     strands: Sequence[Strand],
@@ -535,63 +399,56 @@ def _piece(
     pieces = np.ones(steps, dtype=np.int64)
     if not steps:
         return ProvenPath(position=position, connected=nothing, pieces=pieces, given_up=nothing)
-    own = np.ones(steps, dtype=bool)
-    own[[strand.begin - 1 for strand in strands[1:]]] = False
     left, right = points.take(slice(None, -1)), points.take(slice(1, None))
     near = np.maximum(position.error_bound[1:], position.error_bound[:-1])
-    connected, apart = prove_steps(
-        solver, left, right, near, take_expansions(places, slice(None, -1))
-    )
-    hold = position.holds[1:] & position.holds[:-1] & own
-    connected &= hold
-    open_ = np.flatnonzero(~connected & hold)
-    parts = np.ones(0, dtype=np.int64)
-    if len(open_):
-        # a step towards a change point is often proved from its far end only
-        whole = _open_steps(left, right, near, open_)
-        connected[open_], disproved, parts = prove_backwards(solver, whole, places)
-        apart[open_] |= disproved
-        left_over = ~connected[open_]
-        open_, parts = open_[left_over], parts[left_over]
-    if not len(open_):
-        return ProvenPath(position=position, connected=connected, pieces=pieces, given_up=nothing)
-    apart &= own
-    if not prover.fitted and len(open_) <= FEW:  # the others are found on floats
-        singly = StepProver(solver, prover.path)
-        for k in open_[~apart[open_]]:
-            before = singly.inserted
-            one, other = singly.places(points, (k, k + 1))
-            if one is not None and other is not None:
-                connected[k] = singly.joins(one, other)
-                pieces[k] += singly.inserted - before
-        left_over = ~connected[open_]
-        open_, parts = open_[left_over], parts[left_over]
-        if not len(open_):
-            return ProvenPath(
-                position=position, connected=connected, pieces=pieces, given_up=nothing
-            )
-    quick = replace(prover, halvings=min(prover.halvings, _QUICK))
-    work = Halving(prover if prover.fitted else quick, strands, position.holds)
-    work.lose(np.flatnonzero(apart))
-    queue = work.of_use(_open_steps(left, right, near, open_))
-    parts = parts[np.searchsorted(open_, queue.owner)]
-    work.run(work.divide(queue, parts, allowance), allowance)
-    pieces += work.pieces
+    # steps from one strand to the next are none
+    hold = position.holds[1:] & position.holds[:-1]
+    hold[[strand.begin - 1 for strand in strands[1:]]] = False
+    connected, apart, given_up = np.zeros((3, steps), dtype=bool)
+    stages = [prover]
     if not prover.fitted:  # some steps are proved in fitted weights only
-        connected[open_] = work.proved[open_]
-        fitted = replace(prover, fitted=True)
-        for begin, end in ((left, right), (right, left)):
-            open_ = open_[~connected[open_] & ~apart[open_]]
-            here, there = begin.take(open_), end.take(open_)
-            held, disproved = prove_steps(solver, here, there, near[open_], fitted.places(here.v))
-            connected[open_], apart[open_] = held, disproved
-        open_ = open_[~connected[open_] & ~apart[open_]]
-        work = Halving(fitted, strands, position.holds)
+        quick = replace(prover, halvings=min(prover.halvings, _QUICK))
+        stages = [quick, replace(prover, fitted=True)]
+    for stage in stages:
+        # a step towards a change point is often proved from its far end only
+        for begin, end, shift in ((left, right, 0), (right, left, 1)):
+            open_ = np.flatnonzero(hold & ~connected & ~apart)
+            if not len(open_):
+                return ProvenPath(
+                    position=position, connected=connected, pieces=pieces, given_up=given_up
+                )
+            here = begin.take(open_)
+            known = take_expansions(places, open_ + shift)
+            if stage is not stages[0]:
+                known = stage.places(here.v)
+            connected[open_], apart[open_] = prove_steps(
+                solver, here, end.take(open_), near[open_], known
+            )
+        open_ = np.flatnonzero(hold & ~connected & ~apart)
+        if not stage.fitted and len(open_) <= FEW:
+            for k, inserted in _proved_singly(stage, points, open_):
+                connected[k] = True
+                pieces[k] += inserted
+            open_ = open_[~connected[open_]]
+        work = Halving(stage, strands, position.holds)
         work.lose(np.flatnonzero(apart))
         work.run(work.of_use(_open_steps(left, right, near, open_)), allowance)
+        connected[open_] = work.proved[open_]
         pieces += work.pieces
-    connected[open_] = work.proved[open_]
-    return ProvenPath(position=position, connected=connected, pieces=pieces, given_up=work.given_up)
+        given_up = work.given_up
+    return ProvenPath(position=position, connected=connected, pieces=pieces, given_up=given_up)
+
+
+def _proved_singly(
+    prover: Prover, points: SolvedRows, steps: IndexArray
+) -> Iterator[tuple[int, int]]:
+    """The steps that are proved on floats, and how many positions each takes in between."""
+    singly = StepProver(prover.solver, prover.path)
+    for k in steps.tolist():
+        before = singly.inserted
+        one, other = singly.places(points, (k, k + 1))
+        if one is not None and other is not None and singly.joins(one, other):
+            yield k, singly.inserted - before
 
 
 def _open_steps(left: SolvedRows, right: SolvedRows, near: Array, steps: IndexArray) -> OpenSteps:

@@ -7,7 +7,8 @@ contains exactly one solution for *every* input in between, and contains the sec
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
+from contextlib import suppress
 from dataclasses import dataclass
 from typing import Any
 
@@ -23,8 +24,8 @@ from linkwork.core.numerics.block_solver import (
     linearise_block,
 )
 from linkwork.core.numerics.enclosed import Enclosed
-from linkwork.core.numerics.kantorovich import Expansion, Majorant, Radii, expansion, weighted_radii
-from linkwork.core.numerics.system import Recorded
+from linkwork.core.numerics.kantorovich import Expansion, Radii, expansion
+from linkwork.core.numerics.system import UNKNOWN, Columns, Recorded
 
 
 @dataclass(frozen=True, eq=False)
@@ -41,8 +42,8 @@ class RecordedPlace:
         count = len(range(self.count)[index]) if isinstance(index, slice) else len(index)
         return RecordedPlace(self.record, data, count)
 
-    def radii(self, block: Block, known: Array) -> Radii:
-        """The proofs for known variables that may be off by ``known`` (B, p)."""
+    def radii(self, block: Block, known: Array, *, fitted: bool = False) -> Radii:
+        """The proofs for known variables that may be off by ``known`` (B, p), in usual weights."""
         n, errors = len(block.unknowns), np.ascontiguousarray(known.T)
         with np.errstate(all="ignore"):
             holds, radius, unique, *found = self.record.of_arrays.within(*self.data, *errors)
@@ -62,68 +63,61 @@ class RecordedRows:
 
     def take(self, index: IndexArray | slice) -> RecordedRows:
         """At some of the positions, in the order of ``index``."""
-        if isinstance(index, slice):
-            return RecordedRows(self.record, self.rows[index])
-        return RecordedRows(self.record, [self.rows[k] for k in index.tolist()])
+        rows = range(len(self.rows))[index] if isinstance(index, slice) else index.tolist()
+        return RecordedRows(self.record, [self.rows[k] for k in rows])
 
-    def radii(self, block: Block, known: Array) -> Radii:
-        """The proofs for known variables that may be off by ``known`` (B, p)."""
+    def radii(self, block: Block, known: Array, *, fitted: bool = False) -> Radii:
+        """The proofs for known variables that may be off by ``known`` (B, p), in usual weights."""
         n, within = len(block.unknowns), self.record.of_floats.within
-        found = np.empty((3 + 2 * n, len(self.rows)))
+        found = np.zeros((3 + 2 * n, len(self.rows)))  # nothing is proved
         for k, (row, errors) in enumerate(zip(self.rows, known.tolist(), strict=True)):
-            try:
-                found[:, k] = _NOT_PROVED if row is None else within(*row, *errors)
-            except (ArithmeticError, ValueError):
-                found[:, k] = _NOT_PROVED
+            with suppress(ArithmeticError, ValueError):
+                if row is not None:
+                    found[:, k] = within(*row, *errors)
         return _radii_where(found[0] > 0.0, found[1], found[2], found[3:].reshape(2, n, -1))
-
-
-_NOT_PROVED = 0.0
 
 
 def _radii_where(holds: BoolArray, radius: Array, unique: Array, own: Array) -> Radii:
     """Radii where the proof holds; own (2, n, B): errors and distances of others."""
-    if holds.all():
-        radius, unique = (np.broadcast_to(x, holds.shape).copy() for x in (radius, unique))
-        return Radii(holds.copy(), radius, unique, own[0].T, own[1].T)
     return Radii(
-        holds.copy(),
-        np.where(holds, radius, np.inf),
-        np.where(holds, unique, 0.0),
-        np.where(holds, own[0], np.inf).T,
-        np.where(holds, own[1], 0.0).T,
+        holds=holds,
+        existence_radius=np.where(holds, radius, np.inf),
+        uniqueness_radius=np.where(holds, unique, 0.0),
+        error_bound=np.where(holds, own[0], np.inf).T,
+        isolation_radius=np.where(holds, own[1], 0.0).T,
     )
 
 
-#: The data of a block at some positions; ``None`` where no bounds are known.
-Place = Expansion | RecordedPlace | RecordedRows | Enclosed | None
+#: The data of a block at some positions.
+KnownPlace = Expansion | RecordedPlace | RecordedRows | Enclosed
+#: The same; ``None`` where no bounds are known.
+Place = KnownPlace | None
 
 
-@dataclass(frozen=True, kw_only=True, eq=False)
-class Proof:
+class Proof(Columns):
     """Proofs of B positions with K blocks.
 
     ``holds`` (B,): all blocks proved. ``existence_radius``, ``uniqueness_radius`` (B, K): radii per
     block, weighted. ``error_bound`` (B, N): how far every variable may be from its value, in its
-    own unit; for the inputs the given radius.
+    own unit; for the inputs the given radius. ``isolation_radius`` (B, n): how far all other
+    solutions are, in one unknown at least.
     """
 
     holds: BoolArray
     existence_radius: Array
     uniqueness_radius: Array
     error_bound: Array
+    isolation_radius: Array = UNKNOWN
 
     @property
     def radius(self) -> Array:
         """Within this a true position lies, (B,), weighted."""
-        radius: Array = self.existence_radius.max(axis=1, initial=0.0)
-        return radius
+        return np.asarray(self.existence_radius.max(axis=1, initial=0.0))
 
     @property
     def least_uniqueness_radius(self) -> Array:
         """Within this there is no other, (B,), weighted."""
-        isolation_radius: Array = self.uniqueness_radius.min(axis=1, initial=np.inf)
-        return isolation_radius
+        return np.asarray(self.uniqueness_radius.min(axis=1, initial=np.inf))
 
 
 def rounding_of_inputs(v: Array, unknowns: int) -> Array:
@@ -212,28 +206,44 @@ def prove(
     A block without known bounds proves nothing: ``holds`` is false.
     """
     places = recorded_places(solver, v) if places is None else places
+    return _proof(solver, v, input_radius, places, _position)
+
+
+#: Proves a block at positions v (B, N) for known variables that may be off by (B, N).
+_ProofOfBlock = Callable[[Block, KnownPlace, Array, Array], Radii]
+
+
+def _proof(
+    solver: BlockSolver,
+    v: Array,
+    input_radius: Array,
+    places: Sequence[Place],
+    radii_of: _ProofOfBlock,
+) -> Proof:
+    """Block after block, each for all values that those before it may have."""
     count = len(v)
     error_bound = np.zeros((count, solver.variables))
     error_bound[:, solver.unknowns :] = input_radius
     holds = np.ones(count, dtype=bool)
     existence_radius = np.full((count, len(solver.blocks)), np.inf)
     uniqueness_radius = np.zeros((count, len(solver.blocks)))
+    isolation_radius = np.zeros((count, solver.unknowns))
     for k, (block, place) in enumerate(zip(solver.blocks, places, strict=True)):
         if place is None:
             holds[:] = False
             continue
-        found = _position(block, place, v, error_bound)
+        found = radii_of(block, place, v, error_bound)
         holds &= found.holds
-        existence_radius[:, k], uniqueness_radius[:, k] = (
-            found.existence_radius,
-            found.uniqueness_radius,
-        )
+        existence_radius[:, k] = found.existence_radius
+        uniqueness_radius[:, k] = found.uniqueness_radius
         error_bound[:, block.unknowns] = found.error_bound
+        isolation_radius[:, block.unknowns] = found.isolation_radius
     return Proof(
         holds=holds,
         existence_radius=existence_radius,
         uniqueness_radius=uniqueness_radius,
         error_bound=error_bound,
+        isolation_radius=isolation_radius,
     )
 
 
@@ -264,76 +274,29 @@ def prove_block(block: Block, part: Linearised, v: Array, error_bound: Array) ->
     return _position(block, place, v, error_bound)
 
 
-def _position(
-    block: Block,
-    place: Expansion | RecordedPlace | RecordedRows | Enclosed,
-    v: Array,
-    error_bound: Array,
-) -> Radii:
+def _position(block: Block, place: KnownPlace, v: Array, error_bound: Array) -> Radii:
     """In the block's own weights; where they do not suffice, in fitted ones."""
-    found = _radii(block, place, error_bound)
+    n = len(block.unknowns)
+    known, weights = error_bound[:, block.variables[n:]], block.system.variable_scale[:n]
+    found = place.radii(block, known)
     # fitting costs several products: the usual weights serve for most positions
     open_ = np.flatnonzero(~found.holds)
     if not len(open_) or isinstance(place, Enclosed):
         return found
     if isinstance(place, Expansion):
-        place = place.take(open_)
+        again: KnownPlace | None = place.take(open_)
     else:
         with np.errstate(all="ignore"):
             again = _place(block, linearise_block(block, v[open_]), v[open_])
-        assert isinstance(again, Expansion)
-        place = again
-    fitted = _radii(block, place, error_bound[open_], fitted=True)
-    weights = block.system.variable_scale[: len(block.unknowns)]
-    found.holds[open_], found.error_bound[open_] = fitted.holds, fitted.error_bound
-    found.isolation_radius[open_] = fitted.isolation_radius
-    # back in the usual weights, in which radii are reported
-    found.existence_radius[open_] = (fitted.error_bound / weights).max(axis=1)
-    found.uniqueness_radius[open_] = (fitted.isolation_radius / weights).min(axis=1)
-    return found
-
-
-def _radii(
-    block: Block,
-    place: Expansion | RecordedPlace | RecordedRows | Enclosed,
-    error_bound: Array,
-    fitted: bool = False,
-) -> Radii:
-    """In the block's own weights or, of an expansion, in fitted ones."""
-    n = len(block.unknowns)
-    known = error_bound[:, block.variables[n:]]
-    if isinstance(place, Enclosed):  # its boxes are of all sizes
-        return place.radii(known)
-    if isinstance(place, RecordedPlace | RecordedRows):
-        return place.radii(block, known)
-    weights = block.system.variable_scale[:n]
-    with np.errstate(all="ignore"):
-        majorant = Majorant(place, known)
-        if fitted:
-            weights = majorant.fit_weights(weights)
-        return weighted_radii(majorant.bounds(weights), weights)
-
-
-@dataclass(frozen=True, kw_only=True, eq=False)
-class Reach:
-    """Boxes around B positions with one solution for all inputs of a step.
-
-    ``holds`` (B,): proved for all blocks. ``error_bound`` (B, n): how far the solution may be from
-    the position, unknown by unknown. ``isolation_radius`` (B, n): how far all others are, in one
-    unknown at least.
-    """
-
-    holds: BoolArray
-    error_bound: Array
-    isolation_radius: Array
-
-    def take(self, rows: slice) -> Reach:
-        """Around some of the positions."""
-        return Reach(
-            holds=self.holds[rows],
-            error_bound=self.error_bound[rows],
-            isolation_radius=self.isolation_radius[rows],
-        )
+    assert again is not None
+    fitted = again.radii(block, known[open_], fitted=True)
+    return found.put(
+        open_,
+        fitted.with_columns(  # back in the usual weights, in which radii are reported
+            existence_radius=(fitted.error_bound / weights).max(axis=1),
+            uniqueness_radius=(fitted.isolation_radius / weights).min(axis=1),
+        ),
+    )
 
 
 def reach(
@@ -341,41 +304,26 @@ def reach(
     v: Array,
     input_radius: Array,
     places: Sequence[Place] | None = None,
-) -> Reach:
+) -> Proof:
     """How far around positions v (B, N) one solution exists for all inputs in ``input_radius``.
 
     As :func:`prove`, in weights fitted to each step where ``places`` are expansions, as by default.
     """
     places = expansions(solver, v) if places is None else places
-    count = len(v)
-    error_bound = np.zeros((count, solver.variables))
-    error_bound[:, solver.unknowns :] = input_radius
-    holds = np.ones(count, dtype=bool)
-    isolation_radius = np.zeros((count, solver.unknowns))
-    for block, place in zip(solver.blocks, places, strict=True):
-        if place is None:
-            holds[:] = False
-            continue
-        found = _radii(block, place, error_bound, fitted=True)
-        holds &= found.holds
-        error_bound[:, block.unknowns], isolation_radius[:, block.unknowns] = (
-            found.error_bound,
-            found.isolation_radius,
-        )
-    return Reach(
-        holds=holds,
-        error_bound=error_bound[:, : solver.unknowns],
-        isolation_radius=isolation_radius,
-    )
+    return _proof(solver, v, input_radius, places, _fitted)
 
 
-def steps_connected(v: Array, following: Array, reached: Reach, near: Array) -> BoolArray:
+def _fitted(block: Block, place: KnownPlace, v: Array, error_bound: Array) -> Radii:
+    return place.radii(block, error_bound[:, block.variables[len(block.unknowns) :]], fitted=True)
+
+
+def steps_connected(v: Array, following: Array, reached: Proof, near: Array) -> BoolArray:
     """Whether each step from v to ``following`` is proved to stay on its branch, (B,).
 
     Parameters
     ----------
     v, following : (B, N)
-    reached : Reach
+    reached : Proof
         Of ``v`` for all inputs up to those of ``following``.
     near : (B, N)
         How far the true positions at both ends may be from ``v`` and ``following``.
@@ -386,13 +334,13 @@ def steps_connected(v: Array, following: Array, reached: Reach, near: Array) -> 
     return held
 
 
-def steps_disproved(v: Array, following: Array, reached: Reach, near: Array) -> BoolArray:
+def steps_disproved(v: Array, following: Array, reached: Proof, near: Array) -> BoolArray:
     """Whether each step from v to ``following`` is proved to lead to another branch, (B,).
 
     The branch of v stays within the error bound for all inputs up to those of ``following``.
     Parameters are those of :func:`steps_connected`.
     """
     n = reached.isolation_radius.shape[1]
-    outside = np.abs(following - v)[:, :n] - near[:, :n] > reached.error_bound
+    outside = np.abs(following - v)[:, :n] - near[:, :n] > reached.error_bound[:, :n]
     held: BoolArray = reached.holds & outside.any(axis=1)
     return held

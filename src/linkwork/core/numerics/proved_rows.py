@@ -174,7 +174,6 @@ def radii_of(places: Sequence[ProvedPlace]) -> tuple[Array, Array, Array]:
 # The rows of a table, all at once, with arrays.
 
 
-_PIECE = 4096  # points worked on together: arrays that fit the cache
 _ROUNDS = 6  # corrections of an interpolated position, at most
 _FAR = 0.1  # weighted: a position so far from its interpolation may lie on another branch
 
@@ -236,17 +235,12 @@ def proved_rows(
     ):
         v[n:, there], radius[:, there] = values.T, wide.T
     parts = parts_of(solver, [block.record.of_arrays for block in solver.blocks if block.record])
-    pieces = []
     with np.errstate(all="ignore"):
-        for begin in range(0, max(len(order) - 1, 1), _PIECE):
-            end = begin + _PIECE + 1
-            piece = solve_points(parts, v[:, begin:end], radius[:, begin:end], path.rates)
-            if not piece.sound:
-                return None
-            if not piece.connected.all() and not _closer(solver, path, times[begin:], piece):
-                return None
-            pieces.append(piece if end >= len(order) else _without_last(piece))
-    found = pieces[0] if len(pieces) == 1 else _together(pieces)
+        found = solve_points(parts, v, radius, path.rates)
+        if not found.sound:
+            return None
+        if not found.connected.all() and not _closer(solver, path, times, found):
+            return None
     count = len(t)
     return SolvedRows(
         t=t,
@@ -261,16 +255,6 @@ def proved_rows(
         radius=found.radius[rows],
         uniqueness_radius=found.unique[rows],
     )
-
-
-def _without_last(points: Points) -> Points:
-    """All points but the last, which is the first of the next piece."""
-    return Points._make([*(x[..., :-1] for x in points[:-1]), points.sound])
-
-
-def _together(pieces: Sequence[Points]) -> Points:
-    columns = zip(*(piece[:-1] for piece in pieces), strict=True)
-    return Points._make([*(np.concatenate(x, axis=-1) for x in columns), pieces[0].sound])
 
 
 class Part(NamedTuple):
@@ -366,17 +350,17 @@ def _corrected(
     return error, done
 
 
-def _closer(solver: BlockSolver, path: InputPath, t: Array, piece: Points) -> bool:
-    """Whether the few steps of a piece that are open are proved on floats."""
-    open_: IndexArray = np.flatnonzero(~piece.connected)
+def _closer(solver: BlockSolver, path: InputPath, t: Array, found: Points) -> bool:
+    """Whether the few steps that are open are proved on floats."""
+    open_: IndexArray = np.flatnonzero(~found.connected)
     if len(open_) > FEW:
         return False
     points = SolvedRows(
         t=t,
-        v=piece.v.T,
-        first=piece.first.T,
-        second=piece.second.T,
-        input_radius=piece.errors[solver.unknowns :].T,
+        v=found.v.T,
+        first=found.first.T,
+        second=found.second.T,
+        input_radius=found.errors[solver.unknowns :].T,
     )
     prover = StepProver(solver, path)
     for k in open_:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from typing import Any, NoReturn, Protocol, dataclass_transform
+from typing import Any, NoReturn, Protocol, Self, dataclass_transform
 
 import numpy as np
 
@@ -16,6 +16,7 @@ from linkwork.core.foundation.arrays import (
     StatusArray,
 )
 from linkwork.core.foundation.statuses import Certification, Status
+from linkwork.core.table.curvature import Curvature
 
 
 class SmallSystem(Protocol):
@@ -35,6 +36,11 @@ class SmallSystem(Protocol):
 
     def residual_and_jacobian(self, v: Array) -> tuple[Array, Array]:
         """F, (B, m), and dF/dv, (B, m, N)."""
+
+    def hessians(self, v: Array, weights: Array) -> Array:
+        """Second derivatives of K sums of equations at one position v (N,), (K, N, N); ``weights``
+        (K, m): the factor of every equation in each sum.
+        """
 
 
 class System(SmallSystem, Protocol):
@@ -57,11 +63,6 @@ class System(SmallSystem, Protocol):
 
     def second_directional_derivative(self, v: Array, d: Array) -> Array:
         """D²F[d, d], (B, m)."""
-
-    def hessians(self, v: Array, weights: Array) -> Array:
-        """Second derivatives of K sums of equations at one position v (N,), (K, N, N); ``weights``
-        (K, m): the factor of every equation in each sum.
-        """
 
     @property
     def has_curvature_bound(self) -> bool:
@@ -99,55 +100,8 @@ class Recorded(Protocol):
         """Its functions of arrays."""
 
 
-class Curvature(Protocol):
-    """Second derivatives and rounding, as proofs need them.
-
-    Terms are grouped by phase g and by pairs p of a variable length with a phase.
-    """
-
-    @property
-    def loop_rows(self) -> int:
-        """How many of the m equations belong to loops."""
-
-    @property
-    def loop_phases(self) -> int:
-        """How many of the phases belong to loops; each later one belongs to one sum."""
-
-    @property
-    def phase(self) -> Array:
-        """(B, n, G) second derivatives multiplied by the matrix: |coefficients| of the phases."""
-
-    @property
-    def slide(self) -> Array:
-        """(B, n, P) the same for terms with a variable length, without that length."""
-
-    @property
-    def weights(self) -> Array:
-        """(N, G) how much each variable turns each phase."""
-
-    @property
-    def pair_length(self) -> IndexArray:
-        """(P,) the variable length of each pair."""
-
-    @property
-    def pair_group(self) -> IndexArray:
-        """(P,) the phase of each pair."""
-
-    @property
-    def rounding(self) -> Array:
-        """(B, m) bounds of the error of computing F."""
-
-    @property
-    def jacobian_rounding(self) -> Array:
-        """(B, m, N) bounds of the error of computing dF/dv and its products with m numbers."""
-
-    @property
-    def printing(self) -> Array:
-        """(B, n) bounds of the error of printing the unknowns."""
-
-
 # ----------------------------------------------------------------------
-# Solved rows: positions of one mechanism with everything that is known of each.
+# Rows with named columns; positions of one mechanism with everything that is known of each.
 
 
 #: A column that has not been computed: empty.
@@ -155,8 +109,8 @@ UNKNOWN: Any = np.empty(0)
 
 
 @dataclass_transform(kw_only_default=True, frozen_default=True)
-class _Columns:
-    """Columns given by name, read-only; a column that is not given keeps its class's default.
+class Columns:
+    """Arrays over the same rows by name, read-only; one that is not given keeps its default.
 
     A data class would set each of twenty columns one by one, which takes longer than a step of
     Newton-Raphson on a small block.
@@ -168,10 +122,46 @@ class _Columns:
         vars(self).update(columns)
 
     def __setattr__(self, name: str, value: object) -> NoReturn:
-        raise TypeError("solved rows are read-only: make others with set, put or with_columns")
+        raise TypeError("columns are read-only: make others with set, put or with_columns")
+
+    @property
+    def columns(self) -> dict[str, AnyArray]:
+        """The columns that have been computed, by name."""
+        return dict(vars(self))
+
+    def with_columns(self, **columns: AnyArray) -> Self:
+        """The rows with some columns added or replaced."""
+        return type(self)(**(vars(self) | columns))
+
+    def take(self, where: IndexArray | slice) -> Self:
+        """Some rows, in the order of ``where``."""
+        return type(self)(**{name: column[where] for name, column in vars(self).items()})
+
+    @classmethod
+    def concatenate(cls, parts: Sequence[Self]) -> Self:
+        """Rows one after the other, with the columns that all parts have."""
+        columns = [part.columns for part in parts]
+        names = [name for name in columns[0] if all(name in other for other in columns)]
+        return cls(**{name: np.concatenate([c[name] for c in columns]) for name in names})
+
+    def put(self, where: IndexArray, others: Self) -> Self:
+        """The rows with some replaced by others one by one; columns unknown of those stay."""
+        changed = self.columns
+        for name in changed.keys() & others.columns.keys():
+            changed[name] = changed[name].copy()
+            changed[name][where] = getattr(others, name)
+        return type(self)(**changed)
+
+    def set(self, where: Any = slice(None), **values: Any) -> Self:
+        """The rows with values of some columns set at the rows ``where``."""
+        changed = self.columns
+        for name, value in values.items():
+            changed[name] = changed[name].copy()
+            changed[name][where] = value
+        return type(self)(**changed)
 
 
-class SolvedRows(_Columns):
+class SolvedRows(Columns):
     """B positions of one mechanism in internal units; every column is read-only.
 
     A step of the solution computes some columns; the others are ``UNKNOWN``.
@@ -260,45 +250,9 @@ class SolvedRows(_Columns):
         )
 
     @property
-    def columns(self) -> dict[str, AnyArray]:
-        """The columns that have been computed, by name."""
-        return dict(vars(self))
-
-    @property
     def asks_for_proofs(self) -> bool:
         """Whether the rows of a table are to be proved."""
         return not (self.certification == Certification.NOT_ASKED.code).any()
-
-    def with_columns(self, **columns: AnyArray) -> SolvedRows:
-        """The rows with some columns added or replaced."""
-        return SolvedRows(**(vars(self) | columns))
-
-    def take(self, where: IndexArray | slice) -> SolvedRows:
-        """Some rows, in the order of ``where``."""
-        return SolvedRows(**{name: column[where] for name, column in vars(self).items()})
-
-    @classmethod
-    def concatenate(cls, parts: Sequence[SolvedRows]) -> SolvedRows:
-        """Rows one after the other, with the columns that all parts have."""
-        columns = [part.columns for part in parts]
-        names = [name for name in columns[0] if all(name in other for other in columns)]
-        return cls(**{name: np.concatenate([c[name] for c in columns]) for name in names})
-
-    def put(self, where: IndexArray, others: SolvedRows) -> SolvedRows:
-        """The rows with some replaced by others one by one; columns unknown of those stay."""
-        changed = self.columns
-        for name in changed.keys() & others.columns.keys():
-            changed[name] = changed[name].copy()
-            changed[name][where] = getattr(others, name)
-        return SolvedRows(**changed)
-
-    def set(self, where: Any = slice(None), **values: Any) -> SolvedRows:
-        """The rows with values of some columns set at the rows ``where``."""
-        changed = self.columns
-        for name, value in values.items():
-            changed[name] = changed[name].copy()
-            changed[name][where] = value
-        return SolvedRows(**changed)
 
     def demote(self, standing: Certification) -> SolvedRows:
         """The rows with those that are certified on their branch limited to ``standing``."""

@@ -21,9 +21,9 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from linkwork.core.foundation.arrays import Array, IndexArray, matrix_vector
+from linkwork.core.foundation.arrays import Array, matrix_vector
 from linkwork.core.foundation.rounding import EPSILON, PROOF_SLACK, UNIT_ROUNDOFF
-from linkwork.core.foundation.statuses import CONVERGED, CircuitEnd
+from linkwork.core.foundation.statuses import CircuitEnd
 from linkwork.core.numerics.block_solver import Block, BlockSolver, Linearised
 from linkwork.core.numerics.branch_tracking import (
     BOLD,
@@ -42,7 +42,7 @@ from linkwork.core.numerics.curve_tracing import (
     CurveOptions,
     Leg,
     divide_step,
-    node_between,
+    sign_change,
     trace,
 )
 from linkwork.core.numerics.enclosed import Enclosed
@@ -52,7 +52,6 @@ from linkwork.core.numerics.local_parametrization import (
     Parametrizations,
     fastest_leader,
 )
-from linkwork.core.numerics.newton import sharp
 from linkwork.core.numerics.position_proof import expansions, prove, reach
 
 _ROOM = 4.0  # times the error of the rate: how far apart the ends of the interval are taken
@@ -112,9 +111,8 @@ def prove_dead_point(led: Parametrization, v: Array, place: int) -> FoldProof | 
 def _turns_within(led: Parametrization, v: Array, place: int, width: float) -> FoldProof | None:
     """The proof with an interval of the leader of that half width, or ``None``."""
     solver = led.solver
-    whole = width + 2.0 * UNIT_ROUNDOFF * (
-        abs(float(v[-1])) + width
-    )  # the ends are rounded themselves
+    # the ends are rounded themselves
+    whole = width + 2.0 * UNIT_ROUNDOFF * (abs(float(v[-1])) + width)
     at_v = expansions(solver, v[None, :], exact=True)
     box = reach(solver, v[None, :], np.full((1, 1), whole), at_v)
     if not box.holds[0]:
@@ -134,7 +132,7 @@ def _turns_within(led: Parametrization, v: Array, place: int, width: float) -> F
     if not (turned and (off < box.isolation_radius).all()):
         return None
     weights = solver.variable_scale
-    error_bound = np.append(box.error_bound[0], whole)
+    error_bound = box.error_bound[0]
     return FoldProof(
         error_bound=error_bound,
         isolation_radius=box.isolation_radius[0],
@@ -160,15 +158,13 @@ def _rate_errors(solver: BlockSolver, v: Array, rates: Array) -> _Errors | None:
         return None
     errors = np.zeros_like(rates)
     for block, part, at in zip(solver.blocks, linear, places, strict=True):
-        here, box, d, known = (
-            x[:, block.variables] for x in (v, position.error_bound, rates, errors)
-        )
+        box, d, known = (x[:, block.variables] for x in (position.error_bound, rates, errors))
         known[:, : len(block.unknowns)] = 0.0
         if isinstance(at, Enclosed):
             y, z = _terms_over_box(at, box, d, known)
         else:
             assert isinstance(at, Expansion)  # the position is proved, with arrays
-            y, z = _terms(block, part, at, here, box, d, known)
+            y, z = _terms(block, part, at, box, d, known)
         found = _block_errors(block, y, z)
         if found is None:
             return None
@@ -193,34 +189,32 @@ def _terms(
     block: Block,
     part: Linearised,
     at: Expansion,
-    here: Array,
     box: Array,
     d: Array,
     known: Array,
 ) -> tuple[Array, Array]:
     """y and Z times the weights, (B, n) each, with e ≤ y + Z e for the errors e of a block's rates.
 
-    ``here``, ``box``, ``d`` (B, N): its variables, how far they may be off, and their rates;
+    ``box``, ``d`` (B, N): how far its variables may be off, and their rates;
     ``known``: the errors of the rates of its known variables, 0 for its own.
     """
-    n, system = len(block.unknowns), block.system
-    bend = _Bend(at.phase, at.slide, at.weights, at.pair_length, at.pair_group)
+    n = len(block.unknowns)
     # |A J d|: as computed, the rounding of J, and that of the products
     size, along = np.abs(part.inverse), np.abs(d)
-    slip = matrix_vector(system.curvature(here, part.inverse).jacobian_rounding, along)
+    slip = matrix_vector(at.bend.jacobian_rounding, along)
     slip += (d.shape[1] + n + 4) * UNIT_ROUNDOFF * matrix_vector(np.abs(part.jacobian), along)
     # eq. (39): |A J d|
     y = np.abs(matrix_vector(part.inverse, matrix_vector(part.jacobian, d))) + matrix_vector(
         size, slip
     )
-    y += bend.between(box, along)
+    y += at.slopes_change(box, along)
     # eq. (39): |A J_k| |e_k|
-    y = (y + matrix_vector(at.slope, known[:, n:]) + bend.between(box, known)) * PROOF_SLACK
-    w = system.variable_scale[:n]
+    y = (y + matrix_vector(at.slope, known[:, n:]) + at.slopes_change(box, known)) * PROOF_SLACK
+    w = block.system.variable_scale[:n]
     unit = np.zeros_like(d)
     unit[:, :n] = w
     z = (
-        matrix_vector(at.defect, np.broadcast_to(w, y.shape)) + bend.between(box, unit)
+        matrix_vector(at.defect, np.broadcast_to(w, y.shape)) + at.slopes_change(box, unit)
     ) * PROOF_SLACK
     return y, z
 
@@ -235,32 +229,6 @@ def _block_errors(block: Block, y: Array, z: Array) -> Array | None:
     norm = (y / w).max(axis=1) / room * PROOF_SLACK
     found: Array = (y + z * norm[:, None]) * PROOF_SLACK
     return found if np.isfinite(found).all() else None
-
-
-class _Bend:
-    """|A (J(v + a) - J(v)) b| for changes and directions of known size, (B, n)."""
-
-    def __init__(
-        self,
-        phase: Array,
-        slide: Array,
-        weights: Array,
-        pair_length: IndexArray,
-        pair_group: IndexArray,
-    ) -> None:
-        self.phase, self.slide, self.weights = phase, slide, weights
-        self.length, self.group = pair_length, pair_group
-
-    def between(self, a: Array, b: Array) -> Array:
-        """For a and b (B, N), neither negative."""
-        turned, turning = a @ self.weights, b @ self.weights
-        rows = matrix_vector(self.phase, turned * turning)
-        if self.length.size:
-            longer, slides = a[:, self.length], b[:, self.length]
-            by = turned[:, self.group], turning[:, self.group]
-            pairs = longer * by[1] + slides * by[0]
-            rows += matrix_vector(self.slide, pairs)
-        return rows
 
 
 # ----------------------------------------------------------------------
@@ -504,7 +472,7 @@ def _refine_turn(
     """
     place, p = led.place(leads.parameter), leads.parameter
     edges = sorted((float(low.v[place]), float(high.v[place])))
-    here = _level(led, place, low, high)
+    here = sign_change(led, low, high, lambda node: float(node.first[place]), to_rounding=True)
     here = _sharpen(led, place, here) if prove else here
     proof = prove_dead_point(led, here.v, place) if prove else None
     v, direction = led.whole(here.v), led.whole(here.first)
@@ -525,44 +493,6 @@ def _refine_turn(
         after=where[1],
         node=here,
     )
-
-
-def _level(led: Parametrization, place: int, low: Node, high: Node) -> Node:
-    """The node between two at which a variable's rate is nearest to zero.
-
-    Newton-Raphson on the rate, kept inside the sign change and on the side of the branch on which
-    det J has the sign of both nodes; halving where a step comes onto another branch.
-    """
-    best = here = low if abs(low.first[place]) < abs(high.first[place]) else high
-    options = sharp(led.solver.options)
-    for _ in range(60):
-        step = _to_level(here, place)
-        if abs(step) <= 4.0 * EPSILON * max(1.0, abs(here.t)):
-            break
-        edges = sorted((low.t, high.t))
-        found = None
-        if edges[0] < here.t + step < edges[1]:
-            guess = predict(here, here.t + step)  # eq. (17)
-            guess[-1] = here.t + step
-            done = led.solver.solve(guess[None, :], options)
-            if done.status[0] == CONVERGED:
-                found = node_at(led.solver, led.path, float(guess[-1]), done.v[0])
-        if found is None or not np.array_equal(found.orientation, low.orientation):
-            # Newton has left the sign change or the branch: halve the interval
-            found = node_between(led, low, high, 0.5, to_rounding=True)
-            if found is None or not np.array_equal(found.orientation, low.orientation):
-                break
-            step = found.t - here.t
-        here = found
-        if here.first[place] * low.first[place] > 0.0:
-            low = here
-        else:
-            high = here
-        if abs(here.first[place]) < abs(best.first[place]):
-            best = here
-        elif abs(step) < 1e-9:
-            break  # to rounding
-    return best
 
 
 def _to_level(here: Node, place: int) -> float:

@@ -359,8 +359,7 @@ class _Rounding:
     def _line(self, row: int) -> tuple[Number, Number]:
         rec, closure = self.rec, self.closure
         entries = closure.entries(row)
-        name = f"k{row}"
-        constant = 0.0 if name in closure.zeros else rec.absolute(rec.input(name))
+        constant = rec.absolute(closure.number(f"k{row}"))
         size = rec.total([constant, *[abs(closure.v[k]) * abs(w) for k, w in entries]])
         spread = rec.total([self.scale[k] * abs(w) for k, w in entries])
         error = rec.multiply(UNIT_ROUNDOFF * (len(entries) + 5.0), size)

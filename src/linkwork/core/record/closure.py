@@ -97,11 +97,7 @@ class Closure:
 
     def coefficient(self, term: int) -> Pair:
         """A term's complex coefficient; parts that are zero in every design are left out."""
-        real, imag = f"c{term}.re", f"c{term}.im"
-        return (
-            0.0 if real in self.zeros else self.rec.input(real),
-            0.0 if imag in self.zeros else self.rec.input(imag),
-        )
+        return self.number(f"c{term}.re"), self.number(f"c{term}.im")
 
     def bare(self, term: int) -> tuple[Value, Value]:
         """c e^{iψ}, without a variable length."""
@@ -170,8 +166,7 @@ class Closure:
     def _line(self, row: int) -> Value:
         # eq. (4) with f = 0
         parts: list[Value | float] = [self.v[k] * weight for k, weight in self.entries(row)]
-        name = f"k{row}"
-        return self.rec.total([*parts, 0.0 if name in self.zeros else self.rec.input(name)])
+        return self.rec.total([*parts, self.number(f"k{row}")])
 
     def jacobian(self, variables: Sequence[int]) -> list[list[Value | float]]:
         """dF/dv by some variables."""

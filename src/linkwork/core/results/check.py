@@ -7,6 +7,7 @@ from typing import Any
 
 from linkwork.core.foundation.statuses import Status
 from linkwork.core.results.failure import Failure
+from linkwork.core.results.tables import plain_fields
 
 _ROMAN = ("", "I", "II", "III", "IV", "V", "VI", "VII", "VIII", "IX", "X")
 
@@ -71,15 +72,10 @@ class LoopType:
 
     def to_dict(self) -> dict[str, Any]:
         """The type as JSON-ready data."""
-        return {
-            "links": list(self.links),
-            "name": self.name,
-            "barker": self.barker or None,
-            "grashof": self.grashof,
-            "margin": self.margin,
-            "relative_margin": self.relative_margin,
-            "turns_fully": self.turns_fully,
-        }
+        names = (
+            "links", "name", "barker", "grashof", "margin", "relative_margin", "turns_fully",
+        )  # fmt: skip
+        return plain_fields(self, *names) | {"barker": self.barker or None}
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -119,12 +115,8 @@ class AssurGroup:
 
     def to_dict(self) -> dict[str, Any]:
         """The group as JSON-ready data."""
-        return {
-            "links": list(self.links),
-            "name": self.name,
-            "class": self.class_number,
-            "order": self.order,
-        }
+        found = plain_fields(self, "links", "name", "class_number", "order")
+        return {name.removesuffix("_number"): value for name, value in found.items()}
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -177,16 +169,9 @@ class Classification:
 
     def to_dict(self) -> dict[str, Any]:
         """The classification as JSON-ready data."""
-        return {
-            "chain": self.chain,
-            "links": self.links,
-            "inversion": self.inversion,
-            "type": self.type or None,
-            "blocks": list(self.blocks),
-            "loop": None if self.loop is None else self.loop.to_dict(),
-            "groups": [group.to_dict() for group in self.groups],
-            "class": self.class_number,
-        }
+        names = ("chain", "links", "inversion", "type", "blocks", "loop", "groups")
+        found = plain_fields(self, *names)
+        return found | {"type": self.type or None, "class": self.class_number}
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -249,11 +234,7 @@ class BlockSummary:
 
     def to_dict(self) -> dict[str, Any]:
         """The block as JSON-ready data."""
-        return {
-            "equations": list(self.equations),
-            "unknowns": list(self.unknowns),
-            "group": None if self.group is None else self.group.to_dict(),
-        }
+        return plain_fields(self, "equations", "unknowns", "group")
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -340,18 +321,10 @@ class CheckReport:
     def to_dict(self) -> dict[str, Any]:
         """The report as JSON-ready data."""
         return {
-            "mechanism": self.mechanism,
-            "form": self.form,
-            "links": self.links,
-            "joints": self.joints,
-            "loops": list(self.loops),
+            **plain_fields(self, "mechanism", "form", "links", "joints", "loops"),
             "unknowns": [{"name": n, "unit": u} for n, u in self.unknowns],
             "inputs": [{"name": n, "unit": u} for n, u in self.inputs],
-            "rows": self.rows,
-            "blocks": [block.to_dict() for block in self.blocks],
-            "classification": None
-            if self.classification is None
-            else self.classification.to_dict(),
+            **plain_fields(self, "rows", "blocks", "classification"),
             **({"unclassified": self.unclassified} if self.unclassified else {}),
             "mobility": {
                 "count": self.mobility_count,

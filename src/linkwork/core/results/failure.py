@@ -10,6 +10,7 @@ from linkwork.core.foundation.containers import FrozenDict
 from linkwork.core.foundation.errors import internal
 from linkwork.core.foundation.statuses import NewtonTrouble
 from linkwork.core.results.quantity import Kind, Units
+from linkwork.core.results.tables import plain_fields
 
 _MOST_REMEDIES = 3
 _MOST_CONFIGURATIONS = 4
@@ -50,6 +51,10 @@ class Remedy:
     def change(self) -> float:
         """The change that the length needs; negative if it has to be shorter."""
         return self.needed - self.now
+
+    def to_dict(self) -> dict[str, Any]:
+        """The numbers as JSON-ready data."""
+        return plain_fields(self, "length", "now", "needed", "change", "exact")
 
 
 @internal("units", "kinds")
@@ -201,27 +206,11 @@ class Failure:
 
     def to_dict(self) -> dict[str, Any]:
         """The numbers as JSON-ready data."""
-        return {
-            "what": self.what,
-            "loops": list(self.loops),
-            "gap": self.gap,
-            "remedies": [
-                {
-                    "length": r.length,
-                    "now": r.now,
-                    "needed": r.needed,
-                    "change": r.change,
-                    "exact": r.exact,
-                }
-                for r in self.remedies
-            ],
-            "nearest_input": dict(self.nearest_input),
-            "nearest_kind": self.nearest_kind,
-            "nearest_proved": self.nearest_proved,
-            "through": dict(self.through),
-            "trouble": None if self.trouble is None else self.trouble.name,
-            "configurations": [dict(c) for c in self.configurations],
-            "configuration_names": list(self.configuration_names),
+        names = (
+            "what", "loops", "gap", "remedies", "nearest_input", "nearest_kind", "nearest_proved",
+            "through", "trouble", "configurations", "configuration_names",
+        )  # fmt: skip
+        return plain_fields(self, *names) | {
             "configurations_complete": self.complete,
             "configurations_complete_with_probability_one": self.complete_likely,
         }

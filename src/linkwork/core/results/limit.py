@@ -10,6 +10,7 @@ from typing import Any
 from linkwork.core.foundation.containers import FrozenDict
 from linkwork.core.foundation.names import short_number
 from linkwork.core.foundation.statuses import Status
+from linkwork.core.results.tables import plain_fields
 
 
 class LimitKind(Enum):
@@ -82,18 +83,11 @@ class Limit:
 
     def to_dict(self) -> dict[str, Any]:
         """Plain data, as in the command line's JSON."""
-        return {
-            "kind": self.kind.name,
-            "input": self.input,
-            "bracket": list(self.bracket),
-            "located": self.located,
-            "status": self.status.name,
-            "loops": list(self.loops),
-            "in_line": list(self.in_line),
-            "onward": dict(self.onward),
-            "other": dict(self.other),
-            "passed": self.passed,
-        }
+        names = (
+            "kind", "input", "bracket", "located", "status", "loops", "in_line", "onward", "other",
+            "passed",
+        )  # fmt: skip
+        return plain_fields(self, *names)
 
     def told(self, name: str, unit: str) -> str:
         """The limit as text: its place, the loops that lock, the links in line, the way past it.

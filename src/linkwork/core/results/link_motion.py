@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
 from dataclasses import dataclass
 from itertools import combinations
 
@@ -85,20 +84,15 @@ def _links(of: Position | Motion) -> dict[str, tuple[str, ...]]:
 
 def _point(of: Position | Motion, name: str) -> tuple[ComplexArray, ComplexArray]:
     """The place and the rate of a point, shape (N,)."""
-    if isinstance(of, Motion):
-        return of.trace(name), of.trace(f"{name}.d1")
-    rate = complex(*(of.first.get(f"{name}.{axis}", np.nan) for axis in "xy"))
-    return np.array([complex(*of.points[name])]), np.array([rate])
+    jet = of.place(name)
+    return np.atleast_1d(jet.v), np.atleast_1d(jet.d1)
 
 
 def _angle(of: Position | Motion, link: str) -> tuple[ComplexArray, Array]:
     """The direction and the rate of a link's own angle, shape (N,)."""
-    if isinstance(of, Motion):
-        value, rate = of.links[link].value, of.links[link].first
-    else:
-        value, rate = np.array([of.links[link]]), np.array([of.first.get(link, np.nan)])
-    turn: ComplexArray = np.exp(1j * value * of.units.angle.radians)
-    return turn, rate
+    jet = of.own(link)
+    turn: ComplexArray = np.exp(1j * np.atleast_1d(jet.v) * of.units.angle.radians)
+    return turn, np.atleast_1d(jet.d1)
 
 
 def _direction(
@@ -108,7 +102,7 @@ def _direction(
     first: tuple[ComplexArray, ComplexArray],
 ) -> tuple[ComplexArray, Array]:
     """The direction from a link's first point to another one, and its rate."""
-    for place, rate in _places(of, points[1:]):
+    for place, rate in (_point(of, name) for name in points[1:]):
         along, rates = place - first[0], rate - first[1]
         # two points that coincide in some row give no direction there
         if np.nanmin(np.abs(along), initial=np.inf) > 0.0:
@@ -117,13 +111,6 @@ def _direction(
     raise InputError(
         f'the rotation of link "{link}" is not known: give it two points, or name its angle'
     )
-
-
-def _places(
-    of: Position | Motion, names: tuple[str, ...]
-) -> Iterator[tuple[ComplexArray, ComplexArray]]:
-    for name in names:
-        yield _point(of, name)
 
 
 # ----------------------------------------------------------------------

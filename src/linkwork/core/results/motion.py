@@ -481,7 +481,7 @@ class Motion:
         return wings.use("app.pages.notebook").motion_widget(self)
 
     def __repr__(self) -> str:
-        return motion_text(self)
+        return str(motion_summary(self))
 
     def _repr_html_(self) -> str:
         """A picture and a short table, for notebooks."""
@@ -636,8 +636,3 @@ def motion_summary(motion: Motion) -> Summary:
             reached, unit = series.value[found], motion.units.of(series.quantity.kind)
             rows.append((own, f"{reached.min():.8g} … {reached.max():.8g} {unit}".rstrip()))
     return Summary(head, tuple(rows))
-
-
-def motion_text(motion: Motion) -> str:
-    """The summary as text; see :class:`linkwork.core.results.motion.Motion`."""
-    return str(motion_summary(motion))

@@ -297,7 +297,7 @@ class Position:
             "certificate": {
                 "certified": self.certificate.certified,
                 **{
-                    name: _null_or_none(getattr(self.certificate, name))
+                    name: _null(getattr(self.certificate, name))
                     for name in EVIDENCE
                     if hasattr(self.certificate, name)
                 },
@@ -311,12 +311,9 @@ class Position:
         }
 
 
-def _null(number: float) -> float | None:
-    return float(number) if np.isfinite(number) else None
-
-
-def _null_or_none(number: float | None) -> float | None:
-    return None if number is None else _null(number)
+def _null(number: float | None) -> float | None:
+    """A finite number; ``None`` for any other."""
+    return float(number) if number is not None and np.isfinite(number) else None
 
 
 def _plain(table: Mapping[str, float]) -> dict[str, float | None]:
@@ -333,7 +330,7 @@ def _trail(trail: NewtonTrail) -> dict[str, Any]:
                 "k": step.k,
                 "unknowns": _plain(step.unknowns),
                 "residual": _null(step.residual),
-                "step": None if step.step is None else _null(step.step),
+                "step": _null(step.step),
                 "F": [_null(value) for value in step.values],
                 "J": [[_null(slope) for slope in row] for row in step.jacobian],
                 "change": _plain(step.changes),

@@ -7,6 +7,7 @@ import io
 import math
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
+from enum import Enum
 from typing import Any
 
 from linkwork.core.foundation.arrays import AnyArray
@@ -23,6 +24,21 @@ class Summary:
     def __str__(self) -> str:
         width = max((len(name) for name, _ in self.rows), default=0)
         return "\n".join([self.head, *(f"  {name:<{width}}  {text}" for name, text in self.rows)])
+
+
+def plain_fields(record: Any, *names: str) -> dict[str, Any]:
+    """Some fields of a result as JSON-ready data; members of enumerations by their names."""
+    return {name: _plain(getattr(record, name)) for name in names}
+
+
+def _plain(value: Any) -> Any:
+    if isinstance(value, Enum):
+        return value.name
+    if isinstance(value, Mapping):
+        return dict(value)
+    if isinstance(value, tuple):
+        return [_plain(each) for each in value]
+    return value.to_dict() if hasattr(value, "to_dict") else value
 
 
 def driven_text(inputs: Mapping[str, float], units: Mapping[str, str]) -> str:

@@ -307,7 +307,7 @@ class InputDynamics:
         count = int(np.argmin(found)) if not found.all() else len(v)
         v, q, speed, bend, t = (x[:count] for x in (v, q, speed, bend, t))
         whole, bent = self.inputs.complete(speed, t, 1), self.inputs.complete(bend, t, 2)
-        rates = self.solver.rates(v, whole * self.size, None, bent * self.size)
+        rates = self.solver.rates(v, whole * self.size, bent * self.size)
         code = np.full(count, Certification.NOT_ASKED.code, dtype=np.int8)
         radius = unique = np.full(count, np.nan)
         if certify and not self._has_bound:

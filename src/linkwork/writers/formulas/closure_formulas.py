@@ -29,7 +29,7 @@ from linkwork.core.expression.values import FUNCTIONS
 from linkwork.core.foundation.names import canonical
 from linkwork.core.foundation.units import AngleUnit
 from linkwork.core.motion.model import Model
-from linkwork.core.results import quantities
+from linkwork.core.results.quantities.registry import row_quantity
 from linkwork.writers.formulas.traced import LinearForm, TracedEquations, cosine, forms_of, sine
 
 _OF_ANGLE = ("sin", "cos", "tan")
@@ -240,7 +240,7 @@ class ClosureFormulas:
         for link in self.model.riding:
             self.links[link] = self._link(link)
         for name, output in self.traced.equations.outputs.items():
-            if any(quantities.row_quantity(node.name) for node in names_in(output.formula)):
+            if any(row_quantity(node.name) for node in names_in(output.formula)):
                 continue  # a value on the sheet Linkwork
             self.outputs[name] = CellFormula(output.formula, self._angle)
             for node in names_in(output.formula):

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -25,15 +27,36 @@ from linkwork.core.results.quantities.located_rows import (
     roots_of_cubics,
 )
 
-
-def _least(rows: MotionRows, _: tuple[float, ...]) -> Array:
-    found: Array = np.fmin.reduce(rows.value, axis=-1)
-    return found
+#: Factors of extremes by their sides: 1 for the largest value, -1 for the smallest.
+_Factors = Mapping[float, float]
 
 
-def _most(rows: MotionRows, _: tuple[float, ...]) -> Array:
-    found: Array = np.fmax.reduce(rows.value, axis=-1)
-    return found
+def _sum_of_extremes(factors: _Factors, rows: MotionRows, _: tuple[float, ...]) -> Array:
+    parts = (
+        factor * (np.fmax if side > 0.0 else np.fmin).reduce(rows.value, axis=-1)
+        for side, factor in factors.items()
+    )
+    return np.asarray(sum(parts))
+
+
+def _slopes_of_extremes(factors: _Factors, rows: MotionRows, _: tuple[float, ...]) -> RowSlopes:
+    parts = (factor * at_extreme(rows, side) for side, factor in factors.items())
+    return RowSlopes(value=np.asarray(sum(parts)))
+
+
+def _places_of_extremes(factors: _Factors, rows: MotionRows, _: tuple[float, ...]) -> Places:
+    return joined_places(*(extreme_places(rows, side) for side in factors))
+
+
+def _extremes(word: str, about: str, factors: _Factors) -> MotionQuantity:
+    return MotionQuantity(
+        word=word,
+        about=about,
+        evaluate=partial(_sum_of_extremes, factors),
+        slopes=partial(_slopes_of_extremes, factors),
+        places=partial(_places_of_extremes, factors),
+        sides=tuple(factors),
+    )
 
 
 def _mean(rows: MotionRows, _: tuple[float, ...]) -> Array:
@@ -43,44 +66,14 @@ def _mean(rows: MotionRows, _: tuple[float, ...]) -> Array:
     return mean
 
 
-def _least_slopes(rows: MotionRows, _: tuple[float, ...]) -> RowSlopes:
-    return RowSlopes(value=at_extreme(rows, -1.0))
-
-
-def _most_slopes(rows: MotionRows, _: tuple[float, ...]) -> RowSlopes:
-    return RowSlopes(value=at_extreme(rows, 1.0))
-
-
 def _mean_slopes(rows: MotionRows, _: tuple[float, ...]) -> RowSlopes:
     there = ~np.isnan(rows.value)
     return RowSlopes(value=there / max(int(there.sum()), 1))
 
 
-def _least_places(rows: MotionRows, _: tuple[float, ...]) -> Places:
-    return extreme_places(rows, -1.0)
-
-
-def _most_places(rows: MotionRows, _: tuple[float, ...]) -> Places:
-    return extreme_places(rows, 1.0)
-
-
 EXTREMES = (
-    MotionQuantity(
-        word="min",
-        about="smallest value",
-        evaluate=_least,
-        slopes=_least_slopes,
-        places=_least_places,
-        sides=(-1.0,),
-    ),
-    MotionQuantity(
-        word="max",
-        about="largest value",
-        evaluate=_most,
-        slopes=_most_slopes,
-        places=_most_places,
-        sides=(1.0,),
-    ),
+    _extremes("min", "smallest value", {-1.0: 1.0}),
+    _extremes("max", "largest value", {1.0: 1.0}),
     MotionQuantity(
         word="mean",
         about="mean of the values at the rows found",
@@ -89,34 +82,7 @@ EXTREMES = (
     ),
 )
 
-
-# ----------------------------------------------------------------------
-# The stroke of a quantity: how far it moves between its smallest and its largest value.
-
-
-def _stroke(rows: MotionRows, _: tuple[float, ...]) -> Array:
-    found: Array = np.fmax.reduce(rows.value, axis=-1) - np.fmin.reduce(rows.value, axis=-1)
-    return found
-
-
-def _stroke_slopes(rows: MotionRows, _: tuple[float, ...]) -> RowSlopes:
-    return RowSlopes(value=at_extreme(rows, 1.0) - at_extreme(rows, -1.0))
-
-
-def _stroke_places(rows: MotionRows, _: tuple[float, ...]) -> Places:
-    return joined_places(extreme_places(rows, 1.0), extreme_places(rows, -1.0))
-
-
-STROKE = (
-    MotionQuantity(
-        word="stroke",
-        about="largest less smallest value",
-        evaluate=_stroke,
-        slopes=_stroke_slopes,
-        places=_stroke_places,
-        sides=(1.0, -1.0),
-    ),
-)
+STROKE = (_extremes("stroke", "largest less smallest value", {1.0: 1.0, -1.0: -1.0}),)
 
 
 # ----------------------------------------------------------------------
@@ -147,7 +113,7 @@ def _ratio(rows: MotionRows, _: tuple[float, ...]) -> Array:
     up = rows.ascending()
     if up is None or not up.turn or len(up.input) < 3:
         return np.full(rows.value.shape[:-1], np.nan)
-    rise, fall = _strokes(up, _extremes(up))
+    rise, fall = _strokes(up, _turnings(up))
     ratio = np.maximum(rise, fall) / np.minimum(rise, fall)  # eq. (63)
     found: Array = np.where(up.cycle & up.moves, ratio, np.nan)
     return found
@@ -203,7 +169,7 @@ def _time_ratio_slopes(rows: MotionRows, _: tuple[float, ...]) -> RowSlopes:
     value, first, second = np.zeros(count), np.zeros(count), np.zeros(count)
     if up is None or not up.turn or len(up.input) < 3 or not (up.cycle & up.moves):
         return RowSlopes(value=np.full(count, np.nan))
-    extremes = _extremes(up)
+    extremes = _turnings(up)
     rise, fall = _strokes(up, extremes)
     if not (rise and fall and np.isfinite(rise)) or abs(rise + fall - up.turn) > _SHORT * up.turn:
         return RowSlopes(value=np.full(count, np.nan))  # the end of a rest is no zero of q'
@@ -225,7 +191,7 @@ def _time_ratio_slopes(rows: MotionRows, _: tuple[float, ...]) -> RowSlopes:
     return RowSlopes(value=value, first=first, second=second).in_order_of(rows)
 
 
-def _extremes(rows: MotionRows) -> _Extremes:
+def _turnings(rows: MotionRows) -> _Extremes:
     """Row, step and part of the step of the largest and the smallest value, (…,) each."""
     # argmax takes NaN for the largest value; such motions are left out
     filled = np.where(np.isfinite(rows.value), rows.value, 0.0)

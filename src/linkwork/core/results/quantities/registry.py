@@ -13,7 +13,6 @@ import numpy as np
 from linkwork import wings
 from linkwork.core.foundation.errors import InputError, UnknownNameError, choices
 from linkwork.core.foundation.names import as_name, canonical, find_spelling
-from linkwork.core.results import quantities as every
 from linkwork.core.results.quantities.definition import (
     Asked,
     AskedOfMotion,
@@ -103,7 +102,7 @@ _ABOUT = {
 
 @cache
 def _of_motions() -> dict[str, MotionQuantity]:
-    return {quantity.word: quantity for quantity in every.MOTION_QUANTITIES}
+    return {quantity.word: quantity for quantity in MOTION_QUANTITIES}
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -249,7 +248,7 @@ class Quantities:
         for rate, about in RATES.items():
             if timed or not rate.by_time:
                 yield Listed(name=f"….{rate.value}", kind="rate", unit="", about=about)
-        for quantity in every.MOTION_QUANTITIES:
+        for quantity in MOTION_QUANTITIES:
             inside = ["POINT" if quantity.of_point else "…", *map(str.upper, quantity.numbers)]
             name = f"{quantity.word}({', '.join(inside)})"
             yield Listed(name=name, kind="of a motion", unit="", about=quantity.about)
@@ -328,9 +327,7 @@ def nearest(name: str, known: Iterable[str]) -> str:
 
 
 def _with_rate(asked: Asked, rate: Rate | None) -> Asked:
-    if rate is None:
-        return asked
-    return replace(asked, rate=rate)
+    return asked if rate is None else replace(asked, rate=rate)
 
 
 def _coordinates(points: Iterable[str]) -> Iterator[str]:

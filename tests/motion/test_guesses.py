@@ -1,21 +1,16 @@
-"""Cycles of neighbouring designs, mechanisms that cannot close, and Newton step by step."""
+"""Mechanisms that cannot close, and Newton step by step."""
 
 from __future__ import annotations
 
 import math
-from dataclasses import replace
 
-import numpy as np
 import pytest
-from hypothesis import given, settings, strategies as st
+from hypothesis import given, strategies as st
 
 import linkwork as lw
 from linkwork.circuits.failure.remedies import nearest_assembly
-from linkwork.core.foundation.statuses import Certification
 from linkwork.core.mechanism.linkage import Linkage
-from linkwork.core.motion import warm_started
 from linkwork.core.motion.iterating import guessed_points, pulled_guess
-from linkwork.core.motion.sweeping import approximate_sweep
 from tests.described import described_as
 
 
@@ -34,100 +29,6 @@ def four_bar(**lengths: float) -> lw.Mechanism:
         lengths={"O2 A": sizes["a"], "A B": sizes["b"], "O4 B": sizes["c"]},
         inputs=lw.Input(link="crank"),
     )
-
-
-# Beside a cycle that is known
-
-
-@settings(max_examples=30)
-@given(st.floats(38.0, 42.0), st.floats(117.0, 123.0), st.floats(78.0, 82.0))
-def test_a_neighbours_cycle_is_the_one_that_following_finds(a: float, b: float, c: float) -> None:
-    design = four_bar(a=a, b=b, c=c)
-    beside = warm_started(design.model, four_bar().sweep())
-    assert beside is not None
-    followed = design.sweep()
-    np.testing.assert_allclose(beside.q, followed.q, rtol=0, atol=1e-9)  # both to rounding
-    np.testing.assert_allclose(beside["rocker.d1"], followed["rocker.d1"], rtol=0, atol=1e-9)
-    assert set(beside.certification) == {Certification.NOT_ASKED}
-    assert beside.branch == followed.branch
-    assert beside.worst < 1e-12
-
-
-@pytest.mark.parametrize("name", ["jansen-leg", "rapier-drive", "planetary-gear", "klann-leg"])
-def test_the_cycle_itself_is_its_own_neighbour(name: str) -> None:
-    design = lw.example(name)
-    cycle = design.sweep()
-    beside = warm_started(design.model, cycle)
-    assert beside is not None
-    np.testing.assert_allclose(beside.q, cycle.q, rtol=0, atol=1e-9)
-
-
-@pytest.mark.parametrize(
-    ("name", "length", "sizes"),
-    [
-        ("jansen-leg", "A B", np.linspace(39.0, 37.5, 7)),
-        ("jansen-leg", "A B", np.linspace(37.0, 38.5, 7)),
-        pytest.param("jansen-leg", "P C", np.linspace(36.0, 34.8, 7), marks=pytest.mark.extended),
-        ("four-bar", "O2 A", np.linspace(58.0, 64.0, 13)),
-    ],
-)
-def test_dead_points_move_with_a_dimension_as_following_finds_them(
-    name: str, length: str, sizes: np.ndarray
-) -> None:
-    base = lw.example(name)
-
-    def design(size: float) -> lw.Mechanism:
-        return base.changed(lengths={**described_as(Linkage, base).lengths, length: float(size)})
-
-    cycle = design(sizes[0]).sweep()
-    bounded = 0
-    for size in sizes[1:]:
-        now = design(size)
-        beside, followed = warm_started(now.model, cycle), now.sweep(certify=False)
-        assert beside is not None
-        rows = followed.asked
-        lost = followed.found[rows] & ~beside.found
-        assert not (beside.found & ~followed.found[rows]).any()
-        assert lost.sum() <= 2  # right at a dead point, on either side
-        both = beside.found & followed.found[rows]
-        # beside dead points rounding is enlarged by their condition
-        np.testing.assert_allclose(beside.q[both], followed.q[rows][both], rtol=0, atol=1e-8)
-        assert len(beside.limits) == len(followed.limits)
-        for limit in beside.limits:
-            assert not limit.located
-            low, high = sorted(limit.bracket)
-            assert low < limit.input < high
-            away = [abs(limit.input - other.input) % 360 for other in followed.limits]
-            assert min(min(a, 360 - a) for a in away) < 1.0  # of a table by one degree
-        bounded += bool(beside.limits)
-        cycle = beside
-    assert bounded > 3
-
-
-def test_nothing_is_renewed_where_a_dead_point_has_come_between() -> None:
-    locked = four_bar(a=70.0)
-    cycle = four_bar().sweep()
-    assert warm_started(locked.model, cycle) is None
-    beside = approximate_sweep(locked.model, cycle)
-    followed = locked.sweep()
-    assert [limit.input for limit in beside.limits] == pytest.approx(
-        [limit.input for limit in followed.limits], abs=1e-6
-    )
-    assert beside.status == followed.status
-
-
-def test_nothing_is_renewed_from_a_cycle_of_another_table() -> None:
-    design = four_bar()
-    assert warm_started(design.model, lw.example("slider-crank").sweep()) is None
-    assert warm_started(design.model, design.sweep(step=2)) is None
-    assert approximate_sweep(design.model).found.all()
-
-
-def test_a_row_that_would_jump_to_the_other_branch_is_not_renewed() -> None:
-    cycle = four_bar().sweep()
-    moved = np.array(cycle.q)
-    moved[100:200] = -moved[100:200]  # near the crossed positions
-    assert warm_started(four_bar().model, replace(cycle, q=moved)) is None
 
 
 # As near to closing as it gets

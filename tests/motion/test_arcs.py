@@ -1,4 +1,4 @@
-"""Circuits that end at change points located before are those of change points located anew."""
+"""Arcs between change points, followed with proofs of dead points and without."""
 
 from __future__ import annotations
 
@@ -13,8 +13,6 @@ from linkwork.circuits.assembling import positions_at
 from linkwork.circuits.followed_circuit import explorer_of, is_regular
 from linkwork.core.foundation.arrays import Array
 from linkwork.core.motion.following import Drive
-from linkwork.core.numerics import curve_tracing as curve_crossing
-from linkwork.core.numerics.change_point import Crossing
 from tests.oracles.trains import Loop, train
 
 _ONE_CROSSES = ("galloway", "toggle-press", "beam-engine")
@@ -36,11 +34,11 @@ def _visited(explorer: Explorer, seeds: list[Array]) -> Explorer:
 
 
 def _both(mechanism: lw.Mechanism) -> tuple[Explorer, Explorer]:
-    """All arcs, with every change point located anew, and with those that are known."""
+    """All arcs, with dead points proved, and without."""
     drive = Drive.of_circuits(mechanism.model)
     seeds = _seeds(drive)
-    anew, known = Explorer(Walks(drive, certify=False)), explorer_of(drive)
-    return _visited(anew, seeds), _visited(known, seeds)
+    proved, plain = Explorer(Walks(drive, certify=False)), explorer_of(drive)
+    return _visited(proved, seeds), _visited(plain, seeds)
 
 
 def _places(explorer: Explorer, arc: Any) -> list[list[float]]:
@@ -65,25 +63,10 @@ def _arcs(explorer: Explorer) -> list[Any]:
 
 
 @pytest.mark.parametrize("name", [*_ONE_CROSSES, *_SEVERAL_CROSS])
-def test_arcs_are_those_of_change_points_located_anew(name: str) -> None:
-    anew, known = _both(lw.example(name))
-    assert len(known.crossings) > 1
-    assert _arcs(known) == _arcs(anew)
-
-
-@pytest.mark.parametrize("name", ["toggle-press", "beam-engine"])
-def test_a_change_point_is_located_once(name: str, monkeypatch: pytest.MonkeyPatch) -> None:
-    located: list[Crossing | None] = []
-    locate = curve_crossing.crossing_beyond
-
-    def counted(*given: Any) -> Crossing | None:
-        located.append(locate(*given))
-        return located[-1]
-
-    monkeypatch.setattr("linkwork.core.numerics.curve_tracing.crossing_beyond", counted)
-    drive = Drive.of_circuits(lw.example(name).model)
-    explorer = _visited(explorer_of(drive), _seeds(drive))
-    assert sum(one is not None for one in located) == len(explorer.crossings)
+def test_arcs_are_those_of_proved_dead_points(name: str) -> None:
+    proved, plain = _both(lw.example(name))
+    assert len(plain.crossings) > 1
+    assert _arcs(plain) == _arcs(proved)
 
 
 @pytest.mark.parametrize("offsets", [(0.01,), (0.1, 0.01), (0.03, 0.01)])
@@ -94,20 +77,20 @@ def test_change_points_near_each_other_are_told_apart(offsets: tuple[float, ...]
         Loop(ground, crank, ground, crank, offset, -1.0)
         for (ground, crank), offset in zip(sizes, (0.0, *offsets), strict=False)
     ]
-    anew, known = _both(train(loops, (30.0, 390.0, 10.0)))
+    proved, plain = _both(train(loops, (30.0, 390.0, 10.0)))
     # two arcs for every change point: four half-branches leave each
-    assert len(known.arcs) == 2 * len(known.crossings) > 4
-    assert _arcs(known) == _arcs(anew)
+    assert len(plain.arcs) == 2 * len(plain.crossings) > 4
+    assert _arcs(plain) == _arcs(proved)
 
 
-def test_a_leader_without_a_change_point_is_avoided_once() -> None:
+def test_blocks_that_cross_nearly_together_are_told_apart() -> None:
     loops = [
         Loop(2.0, 1.8, 2.0, 1.8, side=-1.0),
         Loop(2.9, 2.7, 2.9, 2.7, 0.1, -1.0),
         Loop(2.2, 3.1, 1.1, 4.2, -0.01, -1.0),
     ]
-    anew, known = _both(train(loops, (30.0, 390.0, 10.0)))
-    assert _arcs(known) == _arcs(anew)
+    proved, plain = _both(train(loops, (30.0, 390.0, 10.0)))
+    assert _arcs(plain) == _arcs(proved)
 
 
 def test_arcs_on_which_redundant_links_do_not_fit_are_not_followed() -> None:
