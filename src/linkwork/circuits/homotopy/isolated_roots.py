@@ -8,13 +8,14 @@ member is solved once from products of linear forms, until closed paths lead to 
 
 from __future__ import annotations
 
-from collections.abc import Hashable
+from abc import ABC, abstractmethod
 from dataclasses import dataclass, replace
+from functools import cached_property
 from typing import Any, Generic, Protocol, TypeVar
 
 import numpy as np
 
-from linkwork.circuits.homotopy.dead_points import Renaming, Topology
+from linkwork.circuits.homotopy.dead_points import Renaming, Topology, norm_of
 from linkwork.circuits.homotopy.parameter_roots import StartSet, read_sets, write_set
 from linkwork.circuits.homotopy.path_tracking import (
     ARRIVED,
@@ -29,6 +30,7 @@ from linkwork.circuits.homotopy.path_tracking import (
 )
 from linkwork.circuits.homotopy.polynomial_system import (
     SAME_ROOT,
+    ClosureSystem,
     PolynomialSystem,
     Roots,
     distinct_solutions,
@@ -36,6 +38,7 @@ from linkwork.circuits.homotopy.polynomial_system import (
     polish_roots,
 )
 from linkwork.core.foundation.arrays import Array, BoolArray, ComplexArray
+from linkwork.core.numerics.bilinear import random_closures
 
 #: All random numbers follow from this one, so that every run gives the same answer.
 SEED = 20_210_501
@@ -48,16 +51,6 @@ _FEW = 8  # paths that seldom meet, so that following them twice costs less than
 _LOOPS = 2  # closed paths without a new solution after which a set counts as complete
 _STEPS_TO_MULTIPLE = 30  # of Gauss-Newton; each halves the distance to a double solution
 _TRIES = 30  # closed paths at most
-
-
-class ClosureSystem(PolynomialSystem, Protocol):
-    """Polynomials that follow from closures, ``left`` (L, K) of U and ``right`` of V."""
-
-    @property
-    def left(self) -> ComplexArray: ...
-
-    @property
-    def right(self) -> ComplexArray: ...
 
 
 S = TypeVar("S", bound=ClosureSystem)
@@ -82,35 +75,52 @@ class HomotopyFromRelative(_ToSystem, Protocol):
         """Solutions x (B, n) of the first member as points at σ = 1."""
 
 
-class RootFamily(Hashable, Protocol[S]):
-    """Systems that differ in free coefficients only."""
+@dataclass(frozen=True)
+class RootFamily(Topology, ABC, Generic[S]):
+    """Systems of one topology: they differ in free coefficients only."""
 
-    @property
-    def topology(self) -> Topology:
-        """The products, sums and rates that all members have."""
-
+    @abstractmethod
     def complete(self, found: int) -> bool:
         """Whether this many solutions of a member are all, by a theorem."""
 
-    def random(self, rng: np.random.Generator) -> S:
-        """A member with random complex free coefficients."""
-
+    @abstractmethod
     def member(self, left: ComplexArray, right: ComplexArray) -> S:
         """The member with these closures (L, K)."""
 
-    def rename(self, x: ComplexArray, renaming: Renaming) -> ComplexArray:
-        """Solutions (B, n) of another family's member as those of the same member of this one."""
-
-    def generator(self, purpose: int) -> np.random.Generator:
-        """Random numbers of the family's own, the same in every run and in any order of calls."""
-
+    @abstractmethod
     def from_products(self, goal: S, rng: np.random.Generator) -> HomotopyFromProducts:
         """Paths to all isolated solutions of a member."""
 
+    @abstractmethod
     def between(
         self, start: S, goal: S, rng: np.random.Generator, *, nearest: bool = False
     ) -> HomotopyFromRelative:
         """Paths from member to member: random ones, or those with the ``nearest`` start."""
+
+    @cached_property
+    def topology(self) -> Topology:
+        """The products, sums and rates that all members have."""
+        return Topology(rows=self.rows, columns=self.columns, own=self.own, slots=self.slots)
+
+    def random(self, rng: np.random.Generator) -> S:
+        """A member with random complex free coefficients."""
+        return self.member(*(random_closures(self.columns, rng) for _ in range(2)))
+
+    def rename(self, x: ComplexArray, renaming: Renaming) -> ComplexArray:
+        """Solutions (B, n) of another family's member as those of the same member of this one."""
+        halves = renaming.halves
+        rates = x[:, len(halves) + renaming.rates]
+        normed = rates / (rates @ norm_of(self.own))[:, None]
+        return np.concatenate([x[:, halves], normed], axis=1)
+
+    def generator(self, purpose: int) -> np.random.Generator:
+        """Random numbers of the family's own, the same in every run and in any order of calls."""
+        flat = [k for row in self.rows for k in row]
+        flat += [w + 1 for column in self.columns for entry in column for w in (*entry, 2)]
+        if not self.own:
+            return np.random.default_rng([SEED, purpose, *flat])
+        rates = [abs(round(w)) for slot in self.slots for w in slot]
+        return np.random.default_rng([SEED, 1, purpose, self.own, *flat, *rates])
 
 
 @dataclass(frozen=True)

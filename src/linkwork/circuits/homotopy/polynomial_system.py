@@ -21,6 +21,16 @@ class PolynomialSystem(Protocol):
         """F, (B, n), and its derivative, (B, n, n), at x (B, n)."""
 
 
+class ClosureSystem(PolynomialSystem, Protocol):
+    """Polynomials that follow from closures, ``left`` (L, K) of U and ``right`` of V."""
+
+    @property
+    def left(self) -> ComplexArray: ...
+
+    @property
+    def right(self) -> ComplexArray: ...
+
+
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Roots:
     """Isolated solutions of one system, and the outcome of every path.
