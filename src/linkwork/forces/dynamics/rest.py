@@ -281,6 +281,10 @@ class Passage:
             )
         )  # fmt: skip
 
+    def record_end(self) -> None:
+        """Add the state in which the motion has ended early."""
+        self._record(self.t, self.s, self.speed, math.nan, "end")
+
     def _note_lap(self, ahead: bool) -> None:
         """Finish at once if a lap has ended as it began and all further ones are the same."""
         last = len(self.curve.legs) - 1 if ahead else 0

@@ -12,17 +12,15 @@ from linkwork.core.foundation.arrays import Array
 from linkwork.core.foundation.errors import InputError, KeyWords
 from linkwork.core.foundation.names import canonical
 from linkwork.core.foundation.rounding import EPSILON
-from linkwork.core.foundation.statuses import ChangePointPolicy, Status
+from linkwork.core.foundation.statuses import ChangePointPolicy
 from linkwork.core.mechanism.dimensions import Number
 from linkwork.core.motion.higher_rates import model_in_time
 from linkwork.core.motion.model import Model
-from linkwork.core.motion.rows_between import motion_of_rows
 from linkwork.core.motion.solving import solve
 from linkwork.core.numerics.system import SolvedRows
 from linkwork.core.results.motion import Motion
-from linkwork.core.results.quantities.definition import Solved
-from linkwork.forces.dynamics.collocation import VectorStep, try_vector_step
-from linkwork.forces.dynamics.contacts import Contacts, watch_energy
+from linkwork.forces.dynamics.collocation import Step, try_step
+from linkwork.forces.dynamics.contacts import Contacts, SimulatedRows, finished_motion
 from linkwork.forces.dynamics.events import (
     BEHIND,
     Bound,
@@ -39,7 +37,6 @@ from linkwork.forces.dynamics.simulated import (
     check_masses_move,
     model_name,
     start_speeds,
-    with_stops,
 )
 from linkwork.forces.reactions.applied import AppliedLoads
 from linkwork.forces.reactions.geometry import Geometry
@@ -97,8 +94,9 @@ class InputTravel:
             # the acceleration of a law jumps between its segments
             target = min(self.until, self.dynamics.inputs.next_break(self.t))
             short = target - self.t
-            step, following = try_vector_step(
-                self.contacts.acceleration, self.t, self.q, self.speed, min(h, short, self.longest)
+            length = min(h, short, self.longest)
+            step, following, _ = try_step(
+                self.contacts.acceleration, self.t, self.q, self.speed, length, unit=1.0
             )
             if step is None:
                 if following < _SHORTEST * self.until:
@@ -111,7 +109,7 @@ class InputTravel:
             if self.progress is not None:
                 self.progress(self.t / self.until)
 
-    def _advance(self, step: VectorStep, end: float) -> None:
+    def _advance(self, step: Step, end: float) -> None:
         event = None
         comparisons = self.dynamics.reduction.switch_count
         if comparisons or self.bounds:
@@ -228,11 +226,7 @@ class InputTravel:
     def _margin(self, number: int) -> float:
         """The margin of a stop now."""
         solved = self._geometry(self.q[None], self.speed[None], self._now).solved
-        return float(self._stop_margin(self.bounds[number], solved)[0])
-
-    def _stop_margin(self, bound: Bound, solved: Solved) -> Array:
-        found: Array = bound.side * (np.atleast_1d(bound.asked.values(solved, 1.0)) - bound.value)
-        return found
+        return float(self.bounds[number].inside(solved)[0])
 
     def _whole(self, free: Array, order: int) -> Array:
         """All inputs now, or their derivatives, from those of the free ones, (p,)."""
@@ -296,7 +290,7 @@ class InputTravel:
         solved = self._geometry(q, speed, t).solved
         one = np.ones(len(t))
         found = [
-            one if number in active else self._stop_margin(bound, solved)
+            one if number in active else bound.inside(solved)
             for number, bound in enumerate(self.bounds)
         ]
         pushes = {}
@@ -308,11 +302,11 @@ class InputTravel:
         return np.stack(found, axis=1)
 
     def check_inside(self) -> tuple[Bound, float] | None:
-        """A stop beyond which the motion would begin, and the value there."""
+        """A stop beyond which the motion would begin, and its margin there."""
         for number, bound in enumerate(self.bounds):
             margin = self._margin(number)
             if margin < -_rounding(bound, self._normal(number)):
-                return bound, bound.value + bound.side * margin
+                return bound, margin
         return None
 
     def _record(
@@ -420,11 +414,8 @@ def simulate_inputs(
     )
     beyond = travel.check_inside()
     if beyond is not None:
-        bound, value = beyond
-        raise InputError(
-            f"{bound.asked.name} begins at {value:.6g}, beyond its stop at {bound.value:g}: "
-            f"{place(bound.key)}"
-        )
+        bound, margin = beyond
+        raise bound.passed_at_start(margin, place)
     travel.run()
     return _motion(travel)
 
@@ -451,12 +442,6 @@ def _start(model: Model, at: float | Mapping[str, float] | None) -> Model:
 
 
 def _motion(travel: InputTravel) -> Motion:
-    rows, added = SolvedRows.concatenate(travel.rows), list(travel.added)
-    missing = travel.times[travel.taken :]
-    if len(missing):
-        blank = SolvedRows.blank(missing[:, None], rows.v.shape[1], Status.OUT_OF_REACH)
-        rows = SolvedRows.concatenate([rows, blank.with_columns(v=blank.v)])
-        added += [False] * len(missing)
     told = f"simulated to t = {travel.t:.10g} s"
     if travel.ended:
         model = travel.dynamics.reduction.model
@@ -468,7 +453,11 @@ def _motion(travel: InputTravel) -> Motion:
             for variable, value in zip(inputs, values, strict=True)
         )
         told = f"the motion ends at t = {travel.t:.10g} s, {place}: {travel.ended}"
-    motion = motion_of_rows(travel.dynamics.reduction.named, rows, told, np.array(added))
-    pushes, impulses = (np.concatenate(parts) for parts in (travel.pushes, travel.impulses))
-    motion = with_stops(motion, travel.bounds, pushes, impulses)
-    return watch_energy(motion, travel.dynamics.reduction)
+    found = SimulatedRows(
+        rows=SolvedRows.concatenate(travel.rows),
+        added=travel.added,
+        pushes=np.concatenate(travel.pushes),
+        impulses=np.concatenate(travel.impulses),
+    )
+    missing = travel.times[travel.taken :]
+    return finished_motion(travel.dynamics.reduction, found, travel.bounds, missing, told)

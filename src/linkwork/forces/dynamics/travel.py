@@ -58,7 +58,7 @@ class Travel(Passage):
                 continue
             short = self.until - self.t
             step, following, rough = try_step(
-                self._acceleration, self.t, self.s, self.speed, min(h, short), rougher
+                self._acceleration, self.t, self.s, self.speed, min(h, short), rougher=rougher
             )
             shorter = None if step is None else shorter_step(step, *self.leg.reach)
             if shorter is not None:
