@@ -184,13 +184,11 @@ def _proved(follow: Callable[[TrackOptions], _T], cares: Sequence[TrackOptions])
     """What is followed with the least care that proves it, or else with the most that is cheap."""
     for care in cares:
         found = follow(care)
-        if found is None or found.certified or _size(found) > _MOST_AGAIN:
+        if found is None or found.certified:
+            break
+        if sum(leg.v.size for leg in found.curve.legs) > _MOST_AGAIN:
             break
     return found
-
-
-def _size(walk: TracedCurve) -> int:
-    return sum(leg.v.size for leg in walk.curve.legs)
 
 
 def _walk(leads: ParametrizedTable, v: Array, side: float, care: TrackOptions) -> TracedCurve:
@@ -364,13 +362,9 @@ def _starts(block: Block, guess: Array) -> Array:
     wide = np.maximum(size, 1.0) * np.array([1.0, 30.0])[:, None]
     sizes = np.stack([size, *wide])[np.arange(_STARTS) % 3]
     numbers = guess + sizes * np.tan(np.pi * 0.99 * (even - 0.5))
-    spread = numbers if _is_plain(block) else lengths
+    spread = numbers if block.system.is_enclosed else lengths
     starts: Array = np.where(turns, guess + 2.0 * np.pi * even, spread)
     return starts
-
-
-def _is_plain(block: Block) -> bool:
-    return block.system.is_enclosed
 
 
 def _recurrence_root(n: int) -> float:

@@ -19,7 +19,7 @@ import numpy as np
 from linkwork.core.expression.grammar import parse, parse_equation
 from linkwork.core.expression.tree import Binary, Call, Name, Negative, Node, names_in
 from linkwork.core.foundation.arrays import Array
-from linkwork.core.foundation.errors import ExpressionError, InputError
+from linkwork.core.foundation.errors import InputError
 from linkwork.core.foundation.lanes import phase
 from linkwork.core.foundation.names import GROUND, canonical
 from linkwork.core.mechanism.description import Description
@@ -198,6 +198,15 @@ class ChangeableLength:
     changed: Callable[[float], Description]
     signed: bool = False
 
+    @classmethod
+    def of(cls, description: Description, table: str, key: str, value: float) -> ChangeableLength:
+        """A number of a table of the description."""
+
+        def changed(other: float) -> Description:
+            return with_numbers(description, {VariedNumber(key, table, key): other})
+
+        return cls(name=key, value=value, changed=changed)
+
 
 def model_with(length: ChangeableLength, value: float) -> Model | None:
     """The mechanism with another value of one length; ``None`` if there is no such mechanism."""
@@ -219,8 +228,7 @@ def lengths_of(description: Description) -> list[ChangeableLength]:
         case Linkage():
             return [
                 *_dimensions(description, _linkage_names(description)),
-                *_given(description),
-                *_measured(description),
+                *_between_points(description),
                 *_offsets(description),
                 *_ground(description),
             ]
@@ -233,13 +241,9 @@ def lengths_of(description: Description) -> list[ChangeableLength]:
 def _dimensions(description: Description, used: set[str]) -> Iterator[ChangeableLength]:
     """Dimensions that are plain numbers and serve as a length somewhere."""
     for name, number in description.dimensions.items():
-        if isinstance(number, str) or canonical(name) not in used:
-            continue
-
-        def changed(value: float, name: str = name) -> Description:
-            return with_numbers(description, {VariedNumber(name, "dimensions", name): value})
-
-        yield ChangeableLength(name=name, value=float(number), changed=changed, signed=number <= 0)
+        if not isinstance(number, str) and canonical(name) in used:
+            length = ChangeableLength.of(description, "dimensions", name, float(number))
+            yield replace(length, signed=number <= 0)
 
 
 def _linkage_names(linkage: Linkage) -> set[str]:
@@ -251,22 +255,11 @@ def _linkage_names(linkage: Linkage) -> set[str]:
 
 
 def _loop_names(loops: Loops) -> set[str]:
-    trees: list[Node] = []
-    for text in loops.loops.values():
-        try:
-            trees += parse_equation(text)
-        except ExpressionError:  # such a mechanism cannot have been made
-            continue
-    return _resolved(loops, trees)
+    return _resolved(loops, [s for text in loops.loops.values() for s in parse_equation(text)])
 
 
 def _tree(number: Number) -> list[Node]:
-    if not isinstance(number, str):
-        return []
-    try:
-        return [parse(number)]
-    except ExpressionError:
-        return []
+    return [parse(number)] if isinstance(number, str) else []
 
 
 def _resolved(description: Description, trees: list[Node]) -> set[str]:
@@ -297,42 +290,25 @@ def _lengths_in(node: Node) -> Iterator[str]:
             yield from (name.name for name in names_in(node))
 
 
-def _given(linkage: Linkage) -> Iterator[ChangeableLength]:
-    """Lengths that are plain numbers; a ground distance moves the point."""
+def _between_points(linkage: Linkage) -> Iterator[ChangeableLength]:
+    """Given lengths that are plain numbers, and measured ones."""
     ground = set(linkage.links[GROUND])
-    for key, number in linkage.lengths.items():
+    lengths = {
+        key: float(number)
+        for key, number in linkage.lengths.items()
         # the distance of two ground points is changed by moving one of them, see _ground
-        if isinstance(number, str) or set(key.split()) <= ground:
-            continue
-
-        def changed(value: float, key: str = key) -> Description:
-            return replace(linkage, lengths={**linkage.lengths, key: value})
-
-        yield ChangeableLength(name=key, value=float(number), changed=changed)
-
-
-def _measured(linkage: Linkage) -> Iterator[ChangeableLength]:
-    for measured in linkage.shapes.measured:
-        key = " ".join(measured.points)
-
-        def changed(value: float, key: str = key) -> Description:
-            return replace(linkage, lengths={**linkage.lengths, key: value})
-
-        yield ChangeableLength(name=key, value=measured.length, changed=changed)
+        if not isinstance(number, str) and not set(key.split()) <= ground
+    }
+    lengths |= {" ".join(measured.points): measured.length for measured in linkage.shapes.measured}
+    for key, value in lengths.items():
+        yield ChangeableLength.of(linkage, "lengths", key, value)
 
 
 def _offsets(linkage: Linkage) -> Iterator[ChangeableLength]:
-    for k, slider in enumerate(linkage.sliders):
-        if isinstance(slider.offset, str):
-            continue
-
-        def changed(value: float, k: int = k) -> Description:
-            parts = list(linkage.sliders)
-            parts[k] = replace(parts[k], offset=value)
-            return replace(linkage, sliders=tuple(parts))
-
-        name = f"offset of {slider.name}"
-        yield ChangeableLength(name=name, value=float(slider.offset), changed=changed, signed=True)
+    for slider in linkage.sliders:
+        if not isinstance(slider.offset, str):
+            length = ChangeableLength.of(linkage, "sliders", slider.name, float(slider.offset))
+            yield replace(length, name=f"offset of {slider.name}", signed=True)
 
 
 def _ground(linkage: Linkage) -> Iterator[ChangeableLength]:
