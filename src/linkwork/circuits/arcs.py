@@ -1,4 +1,4 @@
-"""Curves along which the input turns fully, followed and proved as sweeps are."""
+"""Curves of positions, traced one after the other and proved together."""
 
 from __future__ import annotations
 
@@ -14,128 +14,26 @@ from linkwork.circuits.branches import (
     branches_of,
     confirmed,
     trace_boldly,
-    trace_with_proof,
 )
 from linkwork.core.foundation.arrays import Array
-from linkwork.core.foundation.rounding import CLOSER_TANGENT, EPSILON, REGULAR_CONDITION
+from linkwork.core.foundation.rounding import CLOSER_TANGENT, REGULAR_CONDITION
 from linkwork.core.foundation.statuses import CircuitEnd, Status
-from linkwork.core.foundation.units import FULL_TURN
-from linkwork.core.motion.following import Drive, track_to
+from linkwork.core.motion.following import Drive
 from linkwork.core.motion.model import FITS, misfit
-from linkwork.core.numerics.branch_tracking import BOLD, Node, node_at, rows_on_track
 from linkwork.core.numerics.change_point import Crossing
-from linkwork.core.numerics.curve_proof import ProvenCurve, prove_curve, prove_curves
-from linkwork.core.numerics.curve_tracing import Curve, Leg, tangents_apart
+from linkwork.core.numerics.curve_proof import prove_curve, prove_curves
+from linkwork.core.numerics.curve_tracing import tangents_apart
 from linkwork.core.numerics.local_parametrization import (
-    Parametrization,
     Parametrizations,
     apart,
     coincide,
     fastest_leader,
     near,
     same_position,
-    whole_turns,
 )
 from linkwork.core.numerics.newton import newton
-from linkwork.core.numerics.path_proof import prove_path
-from linkwork.core.numerics.position_proof import rounding_of_inputs
-from linkwork.core.numerics.system import SolvedRows
 
 _IMPROVED = 1e-4  # weighted: how far a crossing's other blocks are moved at most
-_STEPS = 24  # of a turn, besides those that the march takes in between
-
-
-def full_turn(drive: Drive, start: Array) -> TracedCurve | None:
-    """The curve through a position (N,) that closes after one turn of the input, with its proof.
-
-    ``None`` where the input does not make a whole turn, and where that is not proved: at dead
-    points, near change points, and where the curve closes after several turns only.
-    """
-    leads, p = drive.leads, drive.leads.parameter
-    own = leads.with_parameter(p)
-    if not leads.is_angle[p] or own is None or not own.provable or not drive.solver.unknowns:
-        return None
-    here = own.node(start)
-    t = here.t + np.linspace(0.0, FULL_TURN, _STEPS + 1)
-    # whole turns are no floats: proofs hold for the exact value, too
-    slip = 4.0 * EPSILON * (abs(here.t) + FULL_TURN)
-    anchor = node_at(drive.solver, drive.path, here.t, start)
-    rows = _proved_rows(drive, anchor, t, slip * np.abs(drive.path.rate))
-    if rows is None or not _closes(drive, rows):
-        return None
-    leg = Leg(led=own, nodes=(here, *_nodes_behind(own, here, t, rows)))
-    return TracedCurve(
-        curve=Curve(legs=(leg,), end=CircuitEnd.CLOSED, passes=((0, rows.v[-1]),)),
-        proof=ProvenCurve(
-            legs=np.ones(1, dtype=bool),
-            junctions=np.zeros(0, dtype=bool),
-            closed=True,
-            steps=_STEPS,
-        ),
-        turns=(),
-    )
-
-
-def _proved_rows(drive: Drive, anchor: Node, t: Array, spread: Array) -> SolvedRows | None:
-    """Rows at values of t from an anchor on, joined to it by proved steps; ``None`` if not all are.
-
-    ``spread`` (p,): how far inputs may be from their exact values, besides their rounding.
-    """
-    solver, path = drive.solver, drive.path
-    track = track_to(solver, path, anchor, [float(t[-1])], BOLD)
-    if track.ends:
-        return None
-    rows = rows_on_track(solver, path, track, t)
-    if (rows.status != Status.CONVERGED.code).any():
-        return None
-    apart = rounding_of_inputs(rows.v, solver.unknowns) + spread
-    proof = prove_path(solver, path, rows.with_columns(input_radius=apart), anchor=0)
-    if not proof.connected_to(0).all():
-        return None
-    position = proof.position
-    return rows.with_columns(
-        radius=position.radius, uniqueness_radius=position.least_uniqueness_radius
-    )
-
-
-def _closes(drive: Drive, rows: SolvedRows) -> bool:
-    """Whether the last of proved rows is proved to be the first, modulo whole turns.
-
-    The last position is at most its radius away from the last row's numbers. If these are so near
-    to the first row's that it lies within the first uniqueness radius, it is the first position:
-    no other one lies there.
-    """
-    first, last = rows.v[0], rows.v[-1]
-    turns = whole_turns(drive.leads, first, last)
-    if not drive.leads.repeats_after(turns):
-        return False
-    gap = np.abs(last - FULL_TURN * turns - first) + 4.0 * EPSILON * np.abs(last)
-    away = float((gap / drive.leads.scale)[: drive.solver.unknowns].max())
-    return away + float(rows.radius[-1]) < float(rows.uniqueness_radius[0])
-
-
-def _nodes_behind(own: Parametrization, here: Node, t: Array, rows: SolvedRows) -> list[Node]:
-    """Proved rows as nodes; det J keeps its sign along proved steps."""
-    v, first, second = (x[:, own.order] for x in (rows.v, rows.first, rows.second))
-    return [
-        Node(
-            t=at,
-            v=v[k],
-            first=first[k],
-            second=second[k],
-            orientation=here.orientation,
-            condition=float(rows.condition[k]),
-            nearness=float(rows.condition[k]),  # at most that
-        )
-        for k, at in enumerate(t.tolist())
-        if k
-    ]
-
-
-# ----------------------------------------------------------------------
-# Curves of positions, traced one after the other and proved together.
-
-
 _HALVINGS = 12  # of a bold step: one that needs more is traced again with careful ones
 
 
@@ -143,9 +41,8 @@ class Walks:
     """The curve from each place and heading, traced once.
 
     Curves are traced boldly at first, and proved together by :meth:`settle`: few large arrays take
-    far less time than many small ones. From then on each is proved at once. Where compiled code
-    proves a whole turn of the input, nothing remains to be done. ``prove_turns``: whether to prove
-    where dead points are.
+    far less time than many small ones. From then on each is proved at once. ``prove_turns``:
+    whether to prove where dead points are.
     """
 
     def __init__(self, drive: Drive, certify: bool, *, prove_turns: bool = True) -> None:
@@ -154,7 +51,6 @@ class Walks:
         self._known: dict[tuple[bytes, bytes], TracedCurve] = {}
         self._open: dict[tuple[bytes, bytes], tuple[Array, float | Array]] = {}
         self._proved: dict[int, TracedCurve] = {}
-        self._turned: dict[int, Array] = {}
         self._settled = not certify
 
     def walk(
@@ -165,12 +61,6 @@ class Walks:
         ``known``: change points at which it may end, located again if dead points are proved.
         """
         key = start.tobytes(), np.asarray(heading, dtype=float).tobytes()
-        forwards = isinstance(heading, float) and heading > 0.0
-        if key not in self._known and self.certify and forwards:
-            turned = full_turn(self.drive, start)
-            if turned is not None:
-                self._known[key] = turned
-                self._turned[id(turned.curve)] = start
         if key not in self._known:
             ends = None if self.prove_turns else known
             found = trace_boldly(
@@ -201,18 +91,6 @@ class Walks:
     def with_proof(self, walk: TracedCurve) -> TracedCurve:
         """A curve that remained, as it was settled."""
         return self._proved.get(id(walk.curve), walk)
-
-    def stepwise(self, walk: TracedCurve) -> TracedCurve:
-        """A curve followed in plain numbers even if compiled code has proved it.
-
-        So the positions that are shown do not depend on what this process has loaded, unless plain
-        numbers do not close the curve: then that of compiled code remains, which is proved closed.
-        """
-        start = self._turned.get(id(walk.curve))
-        if start is None:
-            return walk
-        found = trace_with_proof(self.leads, start, 1.0, self.certify)
-        return found if found.curve.end.closed and not found.turns else walk
 
 
 # ----------------------------------------------------------------------
@@ -275,8 +153,7 @@ class Explorer:
 
     def solved_branches(self, arc: Arc) -> tuple[CurveBranch, ...]:
         """The branches of an arc, all their positions solved."""
-        up = self.walks.stepwise(arc.up)
-        return tuple(_branches(self.leads, up, arc.down, solved=True))
+        return tuple(_branches(self.leads, arc.up, arc.down, solved=True))
 
     def settle(self) -> bool:
         """Prove all arcs; false if one was replaced, so that others may follow from it."""
