@@ -8,9 +8,9 @@ import numpy as np
 import pytest
 
 import linkwork as lw
-from linkwork.circuits.arcs import Explorer, Walks
+from linkwork.circuits.arcs import Explorer, Walks, is_regular
 from linkwork.circuits.assembling import positions_at
-from linkwork.circuits.followed_circuit import explorer_of, is_regular
+from linkwork.circuits.followed_circuit import explorer_of
 from linkwork.core.foundation.arrays import Array
 from linkwork.core.motion.following import Drive
 from linkwork.core.numerics import curve_tracing as curve_crossing

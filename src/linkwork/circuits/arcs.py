@@ -12,8 +12,7 @@ from linkwork.circuits.branches import (
     CurveBranch,
     TracedCurve,
     branches_of,
-    confirmed,
-    trace_boldly,
+    trace_with_proof,
 )
 from linkwork.core.foundation.arrays import Array
 from linkwork.core.foundation.rounding import CLOSER_TANGENT, REGULAR_CONDITION
@@ -21,7 +20,6 @@ from linkwork.core.foundation.statuses import CircuitEnd, Status
 from linkwork.core.motion.following import Drive
 from linkwork.core.motion.model import FITS, misfit
 from linkwork.core.numerics.change_point import Crossing
-from linkwork.core.numerics.curve_proof import prove_curve, prove_curves
 from linkwork.core.numerics.curve_tracing import tangents_apart
 from linkwork.core.numerics.local_parametrization import (
     Parametrizations,
@@ -34,63 +32,37 @@ from linkwork.core.numerics.local_parametrization import (
 from linkwork.core.numerics.newton import newton
 
 _IMPROVED = 1e-4  # weighted: how far a crossing's other blocks are moved at most
-_HALVINGS = 12  # of a bold step: one that needs more is traced again with careful ones
 
 
 class Walks:
     """The curve from each place and heading, traced once.
 
-    Curves are traced boldly at first, and proved together by :meth:`settle`: few large arrays take
-    far less time than many small ones. From then on each is proved at once. ``prove_turns``:
-    whether to prove where dead points are.
+    ``prove_turns``: whether to prove where dead points are.
     """
 
     def __init__(self, drive: Drive, certify: bool, *, prove_turns: bool = True) -> None:
         self.drive, self.leads, self.certify = drive, drive.leads, certify
         self.prove_turns = prove_turns
         self._known: dict[tuple[bytes, bytes], TracedCurve] = {}
-        self._open: dict[tuple[bytes, bytes], tuple[Array, float | Array]] = {}
-        self._proved: dict[int, TracedCurve] = {}
-        self._settled = not certify
 
     def walk(
         self, start: Array, heading: float | Array, known: Sequence[Crossing] = ()
     ) -> TracedCurve:
-        """The curve from a position (N,) on; its proof may still have to be made.
+        """The curve from a position (N,) on.
 
         ``known``: change points at which it may end, located again if dead points are proved.
         """
         key = start.tobytes(), np.asarray(heading, dtype=float).tobytes()
         if key not in self._known:
-            ends = None if self.prove_turns else known
-            found = trace_boldly(
-                self.leads, start, heading, self.certify, prove_turns=self.prove_turns, known=ends
+            self._known[key] = trace_with_proof(
+                self.leads,
+                start,
+                heading,
+                self.certify,
+                prove_turns=self.prove_turns,
+                known=None if self.prove_turns else known,
             )
-            if self.certify and found.curve.legs:
-                if self._settled:
-                    proof = prove_curve(self.leads, found.curve)
-                    found = confirmed(self.leads, start, heading, found, proof)
-                else:
-                    self._open[key] = start, heading
-            self._known[key] = found
         return self._known[key]
-
-    def settle(self) -> bool:
-        """Prove all curves; whether all of them remain. Others were traced again with care."""
-        remain = True
-        found = [self._known[key] for key in self._open]
-        proofs = prove_curves(self.leads, [one.curve for one in found], halvings=_HALVINGS)
-        for (key, place), one, proof in zip(self._open.items(), found, proofs, strict=True):
-            after = confirmed(self.leads, *place, one, proof)
-            self._known[key] = self._proved[id(one.curve)] = after
-            remain &= after.curve is one.curve
-        self._open.clear()
-        self._settled = True
-        return remain
-
-    def with_proof(self, walk: TracedCurve) -> TracedCurve:
-        """A curve that remained, as it was settled."""
-        return self._proved.get(id(walk.curve), walk)
 
 
 # ----------------------------------------------------------------------
@@ -142,10 +114,6 @@ class Explorer:
 
     def __init__(self, walks: Walks) -> None:
         self.walks, self.leads = walks, walks.leads
-        self.restart()
-
-    def restart(self) -> None:
-        """Forget everything but the walks."""
         self.arcs: list[Arc] = []
         self.crossings: list[Crossing] = []
         self._covered: set[tuple[int, int, float]] = set()
@@ -154,13 +122,6 @@ class Explorer:
     def solved_branches(self, arc: Arc) -> tuple[CurveBranch, ...]:
         """The branches of an arc, all their positions solved."""
         return tuple(_branches(self.leads, arc.up, arc.down, solved=True))
-
-    def settle(self) -> bool:
-        """Prove all arcs; false if one was replaced, so that others may follow from it."""
-        remain = self.walks.settle()
-        if remain:
-            self.arcs = [_with_proofs(arc, self.walks) for arc in self.arcs]
-        return remain
 
     def visit(self, seed: Array) -> int:
         """The number of the arc through a position at which the parameter can lead.
@@ -293,17 +254,6 @@ def _improved(drive: Drive, v: Array) -> Array:
     return found
 
 
-def _with_proofs(arc: Arc, walks: Walks) -> Arc:
-    proved = replace(
-        arc,
-        up=walks.with_proof(arc.up),
-        down=None if arc.down is None else walks.with_proof(arc.down),
-    )
-    # the first branch needs no way to it
-    others = [replace(branch, proved=proved.certified) for branch in arc.branches[1:]]
-    return replace(proved, branches=(*arc.branches[:1], *others))
-
-
 def _beyond(leads: Parametrizations, crossing: Crossing, direction: Array) -> Array | None:
     """A position just beyond a crossing along a direction, clearly not on the other curve."""
     v, speed = crossing.v, np.abs(direction) / leads.scale
@@ -418,3 +368,12 @@ def _rests(leads: Parametrizations, arc: Arc) -> bool:
     if not values:
         return False
     return bool(np.ptp(np.concatenate(values)) < _STILL * leads.scale[p])
+
+
+def is_regular(leads: Parametrizations, v: Array, most: float = REGULAR_CONDITION) -> bool:
+    """Whether the input can lead at a position (N,): not at dead points and change points.
+
+    ``most``: the condition of the equations there.
+    """
+    own = leads.with_parameter(leads.parameter)
+    return own is not None and own.node(v).nearness < most

@@ -299,7 +299,7 @@ def _is_conservative(reduction: Reduction) -> bool:
         part.turns_with is not None if isinstance(part, Load) else part.damping != 0
         for part in reduction.acting
     )
-    return not (driven or laws or varying or lossy or reduction.rubs or reduction.forcing)
+    return not (driven or laws or varying or lossy or reduction.rubs)
 
 
 def _energies(motion: Motion, reduction: Reduction) -> tuple[Array, Array]:

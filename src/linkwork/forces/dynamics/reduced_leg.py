@@ -68,7 +68,7 @@ class ReducedLeg:
         )
 
     def _repeats(self, low: float, high: float, gain: Array) -> bool:
-        if not gain.any() or not self.reduction.pushed:
+        if not gain.any() or not self.reduction.acting:
             return True
         rows = self._solved(np.linspace(low, high, _LOOKS))
         displaced = self.reduction.geometry(rows.v, rows.first, rows.second, np.zeros(_LOOKS))
@@ -212,12 +212,10 @@ class ReducedLeg:
         if self.tabulates:
             return total, torque[:, None]
         amounts: list[Array] = []
-        if self.reduction.pushed:
+        if self.reduction.acting:
             state = self.state(s, speed, t, gain)
             applied = self.reduction.loaded(state.moving, self.spring_margins(s))
             total = self._work(applied, state.displaced)
-            for forcing in self.reduction.forcing:
-                total = total + forcing(state)
             for _, force, _ in applied.forces:
                 amounts += [force.real, force.imag]
             amounts += [own for _, own in applied.torques]

@@ -378,7 +378,6 @@ def simulate_inputs(
     start_speed: Number | Mapping[str, Number],
     policy: ChangePointPolicy,
     certify: bool,
-    forced: bool,
     place: KeyWords,
     progress: Callable[[float], None] | None,
 ) -> Motion:
@@ -387,14 +386,12 @@ def simulate_inputs(
     Raises
     ------
     InputError
-        For friction, further forces, motions straight across change points, and a start at which
+        For friction, motions straight across change points, and a start at which
         an input moves no mass.
     """
     name = f"{model_name(model)} has {len(model.description.inputs)} inputs"
     if policy is not ChangePointPolicy.STOP:
         raise InputError(f"{name}: their simulation stops at change points, leave out {policy}")
-    if forced:
-        raise InputError(f"{name}: further forces are added to one input only")
     speeds = start_speeds(model, start_speed)
     start = _start(model, at)
     reduction = Reduction(model, model_in_time(model), place=place)

@@ -21,7 +21,7 @@ from linkwork.core.results.motion import Motion
 from linkwork.forces.dynamics.contacts import SimulatedRows, finished_motion, with_contacts
 from linkwork.forces.dynamics.curve import PositionCurve, curve_of
 from linkwork.forces.dynamics.events import Sample
-from linkwork.forces.dynamics.reduction import Forcing, Reduction
+from linkwork.forces.dynamics.reduction import Reduction
 from linkwork.forces.dynamics.several_inputs import simulate_inputs
 from linkwork.forces.dynamics.simulated import (
     bounds_of,
@@ -47,7 +47,6 @@ def simulate(
     start_speed: Number | Mapping[str, Number] = 0,
     change_points: str | ChangePointPolicy = ChangePointPolicy.STOP,
     certify: bool = True,
-    forcing: Sequence[Forcing] = (),
     place: KeyWords = key_text,
     progress: Callable[[float], None] | None = None,
 ) -> Motion:
@@ -68,8 +67,6 @@ def simulate(
         ``stop`` at change points, or go ``straight`` on.
     certify : bool
         Prove the positions of all rows.
-    forcing : sequence of Forcing
-        Further generalised forces.
     place : callable
         Words the key of a load that has no value.
     progress : callable, optional
@@ -88,11 +85,11 @@ def simulate(
     if len(model.description.inputs) > 1:
         several = simulate_inputs(
             model.untimed or model, times=times, at=at, start_speed=start_speed, policy=policy,
-            certify=certify, forced=bool(forcing), place=place, progress=progress,
+            certify=certify, place=place, progress=progress,
         )  # fmt: skip
         return with_contacts(model, several)
     speed = float(start_speeds(model, start_speed)[0])
-    reduction, curve = start_of(model, at, policy, certify, forcing, place)
+    reduction, curve = start_of(model, at, policy, certify, place)
     travel = Travel(
         curve=curve,
         reduction=reduction,
@@ -112,7 +109,6 @@ def start_of(
     at: float | Mapping[str, float] | None,
     policy: ChangePointPolicy,
     certify: bool,
-    forcing: Sequence[Forcing] = (),
     place: KeyWords = key_text,
 ) -> Start:
     """The loads, and the curve of positions through the start."""
@@ -120,7 +116,7 @@ def start_of(
     position = solve(model, at, certify=False, throw=True)
     there = model.from_position(position)
     start = there.equations.start.copy()
-    reduction = Reduction(model, model_in_time(model), forcing, place)
+    reduction = Reduction(model, model_in_time(model), place)
     return reduction, curve_of(model, start, policy, certify)
 
 
