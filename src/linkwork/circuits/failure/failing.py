@@ -306,23 +306,12 @@ def without_start(model: Model, failure: Failure, inputs: Array) -> Failure:
 
     Positions are searched at the inputs asked for; the nearest input is named if there are none.
     """
-    here = _failure(model, inputs, what="")
-    nearest = failure if not here.configurations else here
-    return replace(
-        failure,
-        what="the motion starts at the input value of the guess, where there is no position: "
-        f"{failure.what}",
-        asked=here.asked,
-        nearest_input=nearest.nearest_input,
-        nearest_kind=nearest.nearest_kind,
-        nearest_proved=nearest.nearest_proved,
-        through=nearest.through,
-        unreachable=nearest.unreachable,
-        configurations=here.configurations,
-        configuration_names=here.configuration_names,
-        complete=here.complete,
-        complete_likely=here.complete_likely,
-    )
+    what = "the motion starts at the input value of the guess, where there is no position"
+    kept = ["loops", "gap", "remedies", "trouble", "meant"]
+    here = _failure(model, inputs, what=f"{what}: {failure.what}")
+    if not here.configurations:
+        kept += ["nearest_input", "nearest_kind", "nearest_proved", "through", "unreachable"]
+    return replace(here, **{name: getattr(failure, name) for name in kept})
 
 
 def without_circuit(model: Model, found: Array) -> Failure:
@@ -515,7 +504,6 @@ def _failure(
     model: Model, inputs: Array, reach: ReachableRange | None = None, **parts: object
 ) -> Failure:
     """The explanation with the positions that exist at the inputs (p,)."""
-    driven = [u.name for u in model.equations.inputs]
     found = ELSEWHERE(model, inputs)
     everywhere = model.equations.start[None, :][:0] if found is None else found.v
     n = model.compiled.solver.unknowns
@@ -529,7 +517,8 @@ def _failure(
     names = [u.name for u in model.equations.unknowns]
 
     def by_name(values: Array) -> dict[str, float]:
-        return {name: float(value) for name, value in zip(driven, values, strict=True)}
+        driven = (variable.name for variable in model.equations.inputs)
+        return dict(zip(driven, map(float, values), strict=True))
 
     towards: dict[str, object] = {}
     if reach is not None:

@@ -317,10 +317,9 @@ def _energies(motion: Motion, reduction: Reduction) -> tuple[Array, Array]:
         if motor is not None:
             stored = stored - motor.torque(0.0 * jet.v) * jet.v
     pushed = AppliedLoads(geometry, 1.0)
-    for load in (part for part in reduction.acting if isinstance(part, Load)):
-        apply_load(load, pushed)
-    for point, force, _ in pushed.forces:
-        stored = stored - (force.conj() * geometry.place(point).v).real
-    for link, torque in pushed.torques:
-        stored = stored - torque * geometry.angle(link).v
+    for part in reduction.acting:
+        if isinstance(part, Load):
+            apply_load(part, pushed)
+    for load, moved in pushed.moving(geometry):
+        stored = stored - (np.conj(load) * moved.v).real
     return kinetic, stored

@@ -279,8 +279,7 @@ def _load_size(leg: ReducedLeg, s: Array) -> float:
     state = leg.state(s, still, still, np.zeros(leg.variables))
     applied, weights = leg.reduction.loaded(state.moving), AppliedLoads(state.displaced, 1.0)
     weights.weigh(leg.reduction.description)
-    sizes = [np.abs(force * state.displaced.place(at).d1) for at, force, _ in applied.forces]
-    sizes += [np.abs(own * state.displaced.angle(link).d1) for link, own in applied.torques]
+    sizes = [np.abs(load * moved.d1) for load, moved in applied.moving(state.displaced)]
     sizes += [np.abs(body.weight_rate) for body in weights.masses]
     return float(np.max(sum(sizes, still)))
 

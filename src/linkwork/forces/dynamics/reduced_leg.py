@@ -17,7 +17,7 @@ from linkwork.forces.dynamics.collocation import Panels, fit_panels
 from linkwork.forces.dynamics.curve import Leg
 from linkwork.forces.dynamics.joint_friction import JointFriction, Rubbing
 from linkwork.forces.dynamics.reduction import FAR, NEAR, Reduction, State
-from linkwork.forces.reactions.applied import AppliedLoads
+from linkwork.forces.reactions.applied import AppliedLoads, virtual_work
 from linkwork.forces.reactions.geometry import Geometry
 
 _LOOKS, _POLE = 257, 1e6  # places at which formulas are tried; times their usual value
@@ -243,12 +243,8 @@ class ReducedLeg:
 
     def _work(self, applied: AppliedLoads, displaced: Geometry) -> Array:
         """Q of loads and springs, (B,)."""
-        total = np.zeros(displaced.rows)
-        for point, force, _ in applied.forces:
-            total = total + (force.conj() * displaced.place(point).d1).real
-        for link, torque in applied.torques:
-            total = total + torque * displaced.angle(link).d1
-        return total
+        works = (virtual_work(*pair) for pair in applied.moving(displaced))
+        return sum(works, np.zeros(displaced.rows))
 
     def margins(self, s: Array, speed: Array, t: Array, gain: Array) -> Array:
         """The margins of all comparisons, (B, comparisons)."""

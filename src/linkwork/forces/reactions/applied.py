@@ -12,7 +12,7 @@ import numpy as np
 from linkwork.core.expression.derivatives import Jet, evaluate
 from linkwork.core.expression.grammar import CONSTANTS, parse
 from linkwork.core.expression.tree import Node, names_in, with_switches
-from linkwork.core.foundation.arrays import Array, BoolArray, ComplexArray
+from linkwork.core.foundation.arrays import AnyArray, Array, BoolArray, ComplexArray
 from linkwork.core.foundation.containers import FrozenDict
 from linkwork.core.foundation.lanes import cis, is_batched
 from linkwork.core.foundation.names import GROUND
@@ -78,6 +78,13 @@ class AppliedLoads:
     def turn(self, link: str, torque: Array) -> None:
         """A torque on a link, (B,)."""
         self.torques.append((link, torque))
+
+    def moving(self, geometry: Geometry) -> Iterator[tuple[AnyArray, Jet]]:
+        """Every force and torque with what it moves in the rows of a geometry."""
+        for point, force, _ in self.forces:
+            yield force, geometry.place(point)
+        for link, torque in self.torques:
+            yield torque, geometry.angle(link)
 
     def value(self, number: Number) -> Array:
         """A number or formula in all rows, (B,)."""
@@ -175,6 +182,12 @@ class AppliedLoads:
         self.stored.append(-mass * (place.v * np.conj(fall)).real)
         self.stored_rates.append(-falling)
         self.kinetic.append(0.5 * (mass * np.abs(velocity) ** 2 + inertia * spin**2))
+
+
+def virtual_work(load: AnyArray, moved: Jet) -> Array:
+    """The work of a force or torque per unit of what the geometry moves with, (B,)."""
+    found: Array = (np.conj(load) * moved.d1).real
+    return found
 
 
 def as_complex(force: Any) -> ComplexArray:

@@ -302,18 +302,17 @@ def solve_forces(model: Model, solved: Solved) -> ForceRows:
         found = _Solution(geometry, applied, _has_rates(by_work, geometry))
         stopped = undetermined_stops(geometry, bodies)
         found.regular &= ~stopped
-        if bodies is not None:
-            by_work = by_work + stop_efforts(bodies)
         zero = np.zeros_like(by_work)
         rubbing = FrictionEfforts(
             efforts=zero, largest=zero, doubt=np.zeros(geometry.rows, dtype=bool)
         )
+        drives: list[str] = []
         if bodies is not None:
+            by_work = by_work + stop_efforts(bodies)
             rubbing = _add_reactions(found, bodies)
-        drives = [] if bodies is None else [effort_name(i.column) for i in bodies.linkage.inputs]
+            drives = [effort_name(which.column) for which in bodies.linkage.inputs]
         _add_efforts(found, by_work, largest, drives, rubbing)
-        rubs = bodies is not None and any(own.motion is not None for own in bodies.following)
-        if bodies is not None and rubs and len(by_work):
+        if bodies is not None and bodies.rubs and len(by_work):
             _add_losses(found, by_work, largest, rubbing)
             if not applied.rate:
                 _add_backward(found, bodies, by_work)
@@ -366,7 +365,7 @@ def _add_reactions(found: _Solution, bodies: FreeBodies) -> FrictionEfforts:
     found.locked = found.regular & ~forces.found
     found.regular &= forces.found
     found.proved = forces.proved
-    if any(own.motion is not None for own in bodies.following):
+    if bodies.rubs:
         found.held = found.regular & _held(bodies.geometry)
         found.regular &= ~found.held
     read_first_links(bodies, [*acts, *forces.acts()])
