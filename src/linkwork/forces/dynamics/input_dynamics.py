@@ -190,11 +190,7 @@ class InputDynamics:
         """Positions (B, N) at free inputs (B, f) and times (B,), and which of them were found on
         the same branch.
         """
-        return self.positions_of(self.inputs.complete(q, t, 0))
-
-    def positions_of(self, inputs: Array) -> tuple[Array, BoolArray]:
-        """The same at all inputs (B, p)."""
-        own = inputs * self.size
+        own = self.inputs.complete(q, t, 0) * self.size
         guess = self._at + (own - self._at[self.solver.unknowns :]) @ self._slopes.T
         guess[:, self.solver.unknowns :] = own
         finite = np.isfinite(guess).all(axis=1)

@@ -72,6 +72,7 @@ class InputTravel:
     ended: str = ""
     t: float = 0.0
     taken: int = 0
+    longest: float = np.inf  # step after a shock
 
     def __post_init__(self) -> None:
         self.until = float(self.times[-1])
@@ -170,7 +171,7 @@ class InputTravel:
             self._record_here(name)
             self._end(f"a law drives the mechanism into the {name}")
             return
-        before, state = self.speed, (self.q, self.t)
+        before = self.speed
         self.speed, impulses = self.contacts.strike(number, before, self.t, bound.restitution)
         pull = self.contacts.pull(number, self.q, self.speed, self.t)
         leaving = -bound.restitution * closing
@@ -184,11 +185,9 @@ class InputTravel:
         self.longest = 2.0 * flight if flight > 0.0 else np.inf
         if rests:
             self.contacts.active.append(number)
-            self.q, self.speed = self.contacts.close(*state[:1], self.speed, self.t)
+            self.q, self.speed = self.contacts.close(self.q, self.speed, self.t)
             self._let_go(self.contacts.release(self.q, self.speed, self.t))
         self._switch()
-
-    longest: float = np.inf
 
     def _let_go(self, numbers: Sequence[int]) -> None:
         """Go behind what rounding could take for stops that the motion leaves."""
@@ -257,7 +256,9 @@ class InputTravel:
             self.dynamics.aim(self._geometry(self.q[None], self.speed[None], self._now), turn)
 
     def _switch_margins(self, q: Array, speed: Array, t: Array) -> list[Array]:
-        applied, own = self._applied(q, speed, t), self.dynamics
+        own = self.dynamics
+        switches = own.reduction.switches
+        applied = AppliedLoads(self._geometry(q, speed, t), 1.0, switches=switches)
         rates = own.inputs.complete(speed, t, 1) * own.size
         springs = own.spring_margins(applied.geometry)
         return own.reduction.margins(applied, rates, springs)
@@ -266,21 +267,12 @@ class InputTravel:
     def _now(self) -> Array:
         return np.array([self.t])
 
-    def _applied(self, q: Array, speed: Array, t: Array) -> AppliedLoads:
-        return AppliedLoads(
-            self._geometry(q, speed, t), 1.0, switches=self.dynamics.reduction.switches
-        )
-
     def _geometry(self, q: Array, speed: Array, t: Array) -> Geometry:
-        inputs = self.dynamics.inputs
-        return self._geometry_of(inputs.complete(q, t, 0), inputs.complete(speed, t, 1), t)
-
-    def _geometry_of(self, inputs: Array, speeds: Array, t: Array) -> Geometry:
-        """Rows at all inputs (B, p) and their speeds."""
-        v, found = self.dynamics.positions_of(inputs)
-        rates = self.dynamics.solver.rates(v, speeds * self.dynamics.size)
+        own = self.dynamics
+        v, found = own.positions(q, t)
+        rates = own.solver.rates(v, own.inputs.complete(speed, t, 1) * own.size)
         first = np.where(found[:, None], rates.first, np.nan)
-        return self.dynamics.reduction.geometry(v, first, np.full_like(v, np.nan), t)
+        return own.reduction.geometry(v, first, np.full_like(v, np.nan), t)
 
     def _margins(self, q: Array, speed: Array, t: Array) -> Array:
         """The margins of stops, the pushes of those that are closed, and the margins of switches,
@@ -340,9 +332,9 @@ class InputTravel:
         self.impulses[-1][:] = impulses
         self.speed = after
 
-    def _end(self, why: str, event: str = "end") -> None:
+    def _end(self, why: str) -> None:
         self.ended = why
-        self._record_here(event)
+        self._record_here("end")
 
     def _why(self) -> str:
         """Why no step succeeds."""
