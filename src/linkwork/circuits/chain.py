@@ -68,10 +68,6 @@ class Chain:
         """The joints of a link."""
         return [joint for joint in self.joints if link in joint.links]
 
-    def joined(self, first: str, second: str) -> Joint | None:
-        """The joint between two links, if it exists."""
-        return next((j for j in self.joints if first in j.links and second in j.links), None)
-
     def with_blocks(self) -> Chain:
         """The chain of lower pairs only: a pin in a slot becomes a block, pinned and sliding.
 
