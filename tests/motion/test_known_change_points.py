@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 import linkwork as lw
-from linkwork.circuits.arcs import Explorer, Walks, is_regular
+from linkwork.circuits.arcs import Explorer, is_regular
 from linkwork.circuits.assembling import positions_at
 from linkwork.circuits.followed_circuit import explorer_of
 from linkwork.core.foundation.arrays import Array
@@ -39,7 +39,7 @@ def _both(mechanism: lw.Mechanism) -> tuple[Explorer, Explorer]:
     """All arcs, with every change point located anew, and with those that are known."""
     drive = Drive.of_circuits(mechanism.model)
     seeds = _seeds(drive)
-    anew, known = Explorer(Walks(drive, certify=False)), explorer_of(drive)
+    anew, known = Explorer(drive, certify=False), explorer_of(drive)
     return _visited(anew, seeds), _visited(known, seeds)
 
 
@@ -112,7 +112,7 @@ def test_a_leader_without_a_change_point_is_avoided_once() -> None:
 
 def test_arcs_on_which_redundant_links_do_not_fit_are_not_followed() -> None:
     drive = Drive.of_circuits(lw.example("dixon-two").model)
-    explorer = _visited(Explorer(Walks(drive, certify=False)), _seeds(drive))
+    explorer = _visited(Explorer(drive, certify=False), _seeds(drive))
     assert len(explorer.arcs) > 4
     assert all(explorer.fits(arc) for arc in explorer.arcs)
 

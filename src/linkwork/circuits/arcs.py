@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -32,37 +31,6 @@ from linkwork.core.numerics.local_parametrization import (
 from linkwork.core.numerics.newton import newton
 
 _IMPROVED = 1e-4  # weighted: how far a crossing's other blocks are moved at most
-
-
-class Walks:
-    """The curve from each place and heading, traced once.
-
-    ``prove_turns``: whether to prove where dead points are.
-    """
-
-    def __init__(self, drive: Drive, certify: bool, *, prove_turns: bool = True) -> None:
-        self.drive, self.leads, self.certify = drive, drive.leads, certify
-        self.prove_turns = prove_turns
-        self._known: dict[tuple[bytes, bytes], TracedCurve] = {}
-
-    def walk(
-        self, start: Array, heading: float | Array, known: Sequence[Crossing] = ()
-    ) -> TracedCurve:
-        """The curve from a position (N,) on.
-
-        ``known``: change points at which it may end, located again if dead points are proved.
-        """
-        key = start.tobytes(), np.asarray(heading, dtype=float).tobytes()
-        if key not in self._known:
-            self._known[key] = trace_with_proof(
-                self.leads,
-                start,
-                heading,
-                self.certify,
-                prove_turns=self.prove_turns,
-                known=None if self.prove_turns else known,
-            )
-        return self._known[key]
 
 
 # ----------------------------------------------------------------------
@@ -107,13 +75,12 @@ class Arc:
 class Explorer:
     """All curves found so far, and the change points between them.
 
-    Parameters
-    ----------
-    walks : Walks
+    ``prove_turns``: whether to prove where dead points are.
     """
 
-    def __init__(self, walks: Walks) -> None:
-        self.walks, self.leads = walks, walks.leads
+    def __init__(self, drive: Drive, certify: bool, *, prove_turns: bool = True) -> None:
+        self.drive, self.leads, self.certify = drive, drive.leads, certify
+        self.prove_turns = prove_turns
         self.arcs: list[Arc] = []
         self.crossings: list[Crossing] = []
         self._covered: set[tuple[int, int, float]] = set()
@@ -180,7 +147,7 @@ class Explorer:
 
     def _fit_at(self, v: Array) -> bool:
         """Whether redundant links fit at all of some positions (K, N)."""
-        return bool((misfit(self.walks.drive.model.equations, v) <= FITS).all())
+        return bool((misfit(self.drive.model.equations, v) <= FITS).all())
 
     def _explore(self, seed: Array, heading: float | Array) -> int:
         """Follow the curve through a seed both ways; the number of the arc."""
@@ -211,7 +178,15 @@ class Explorer:
 
     def _walk(self, start: Array, heading: float | Array) -> tuple[TracedCurve, int | None]:
         """A walk and the number of the crossing it ends at, if it does."""
-        walk = self.walks.walk(start, heading, self.crossings)
+        # known crossings are located again if dead points are proved
+        walk = trace_with_proof(
+            self.leads,
+            start,
+            heading,
+            self.certify,
+            prove_turns=self.prove_turns,
+            known=None if self.prove_turns else self.crossings,
+        )
         found = walk.curve.crossing
         if found is None or not walk.curve.legs:
             return walk, None
@@ -221,7 +196,7 @@ class Explorer:
         return walk, self._register(found, -side * led.whole(node.first))
 
     def _register(self, found: Crossing, came_from: Array) -> int:
-        found = replace(found, v=_improved(self.walks.drive, found.v))
+        found = replace(found, v=_improved(self.drive, found.v))
         number = next(
             (k for k, one in enumerate(self.crossings) if coincide(self.leads, one.v, found.v)),
             len(self.crossings),

@@ -9,7 +9,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from linkwork.circuits import failure as why
-from linkwork.circuits.arcs import Arc, Explorer, Walks, is_regular, positions_at_value
+from linkwork.circuits.arcs import Arc, Explorer, is_regular, positions_at_value
 from linkwork.circuits.assembling import Assemblies, positions_at
 from linkwork.circuits.branches import CurveBranch, weakest_place
 from linkwork.circuits.dead_inputs import (
@@ -195,7 +195,7 @@ class _Group:
 class _Circuits:
     def __init__(self, drive: Drive, certify: bool) -> None:
         self.drive, self.leads, self.model, self.certify = drive, drive.leads, drive.model, certify
-        self.explorer = Explorer(Walks(drive, certify))
+        self.explorer = Explorer(drive, certify)
         self.seeding = Seeding(drive, self.explorer)
 
     def result(self) -> Circuits:

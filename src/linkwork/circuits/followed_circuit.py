@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from linkwork.circuits.arcs import Arc, Explorer, Walks, is_regular, positions_at_value
+from linkwork.circuits.arcs import Arc, Explorer, is_regular, positions_at_value
 from linkwork.circuits.branches import CurveBranch
 from linkwork.core.foundation.arrays import Array
 from linkwork.core.foundation.statuses import CONVERGED, CircuitEnd, Status
@@ -58,7 +58,7 @@ def straight_way(drive: Drive, start: Array, values: Sequence[float]) -> Straigh
 
 def explorer_of(drive: Drive) -> Explorer:
     """The arcs that all circuits of a question have in common, none followed yet."""
-    return Explorer(Walks(drive, certify=False, prove_turns=False))
+    return Explorer(drive, certify=False, prove_turns=False)
 
 
 class FollowedCircuit:
