@@ -19,7 +19,7 @@ from linkwork.circuits.failure.reach import (
     reach_towards,
     roots_in_block,
 )
-from linkwork.circuits.failure.remedies import dyad_of, remedies_of
+from linkwork.circuits.failure.remedies import remedies_of
 from linkwork.core.foundation.arrays import Array
 from linkwork.core.foundation.statuses import NewtonTrouble, Status
 from linkwork.core.foundation.units import within_half_a_turn
@@ -442,8 +442,7 @@ def _cannot_close(model: Model, block: Block, number: int, here: Array, miss: Mi
     inputs = here[solver.unknowns :]
     count = _loops_in(model, block)
     gaps = np.hypot(miss.f[:count], miss.f[count : 2 * count])
-    dyad = dyad_of(block, here)
-    total = dyad.gap if dyad is not None else float(np.linalg.norm(gaps))
+    total = float(np.linalg.norm(gaps))
     worst, unit = int(np.argmax(gaps)), model.units.length
     labels = _labels(model, block)[:count]
     names = f'loop "{labels[worst]}"'

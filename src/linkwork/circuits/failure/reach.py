@@ -9,9 +9,9 @@ from typing import TypeVar
 
 import numpy as np
 
-from linkwork.circuits.assembling import positions_at
+from linkwork.circuits.assembling import positions_at, solve_block
 from linkwork.circuits.branches import TracedCurve
-from linkwork.circuits.failure.remedies import dyad_of
+from linkwork.circuits.failure.remedies import dyad_form
 from linkwork.core.equations.compiling import ParametrizedTable
 from linkwork.core.foundation.arrays import Array, BoolArray
 from linkwork.core.foundation.statuses import CircuitEnd, Completeness, Status
@@ -305,12 +305,15 @@ def block_positions(block: Block, v: Array) -> tuple[Array, bool]:
 
     ``v`` also holds the block's guess, around which lengths and plain numbers are looked for.
     """
-    dyad = dyad_of(block, v)
-    if dyad is not None:
-        polished, good = _solve_starts(block, v, dyad.roots)
-        return polished, bool(good.all()) and dyad.all_roots
     start = v[block.variables]
     n = len(block.unknowns)
+    form = dyad_form(block)
+    if form is not None:
+        known = start[None, n:]
+        (roots,) = solve_block(form, *form.closures(known, np.zeros_like(known)))
+        starts = form.unknowns(roots.x, np.repeat(known, len(roots.x), axis=0), start[:n])
+        polished, good = _solve_starts(block, v, starts)
+        return polished, bool(good.all()) and roots.grade.complete
     linear = _is_linear(block)
     found, _ = _solve_starts(block, v, start[None, :n] if linear else _starts(block, start[:n]))
     distinct: list[Array] = []
