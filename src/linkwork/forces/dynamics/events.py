@@ -146,7 +146,7 @@ class Bound:
     def way_off(self, leg: ReducedLeg, s: float, t: float, gain: Array) -> float:
         """The same where the stop is touched, to rounding; 0 where it is not."""
         margin, slope = self._near(leg, s, t, gain)
-        return math.copysign(1.0, slope) if margin <= self._rounding(slope) else 0.0
+        return math.copysign(1.0, slope) if margin <= self.rounding(slope) else 0.0
 
     def is_passed(self, leg: ReducedLeg, s: float, speed: float, t: float, gain: Array) -> bool:
         """Whether a motion is at the stop or behind it, and moves outwards."""
@@ -157,9 +157,10 @@ class Bound:
     def is_beyond(self, leg: ReducedLeg, s: float, t: float, gain: Array) -> bool:
         """Whether the margin is negative by more than rounding."""
         margin, slope = self._near(leg, s, t, gain)
-        return margin < -self._rounding(slope)
+        return margin < -self.rounding(slope)
 
-    def _rounding(self, slope: float) -> float:
+    def rounding(self, slope: float) -> float:
+        """Up to which margin the stop is touched, by the slope of the margin."""
         return _TOUCHES * abs(slope) + 8.0 * EPSILON * abs(self.value)
 
     def flight(self, leg: ReducedLeg, speed: float, pull: float, until: float) -> float:

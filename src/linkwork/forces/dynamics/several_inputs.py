@@ -46,7 +46,6 @@ _FIRST = 1e-3  # of the whole time: the first step
 _DRIVEN = 1e-9  # of the normal: less of it is rounding
 _RESTS = 1e-8  # of the whole time: a shorter bounce is rest
 _LOW = 1e-12  # of a radian, or of the longest link: so is a lower one, whose margin is rounding
-_TOUCHES = 1e-9  # of the same: a stop so near at the start is touched
 _SINGULAR = 1e4  # condition beyond which a dead point of the inputs is what stops the motion
 
 
@@ -204,11 +203,10 @@ class InputTravel:
         """Close the stops that are touched at the start and pushed against; go behind the others,
         which may be pushed against later.
         """
-        for number, bound in enumerate(self.bounds):
-            normal = self._normal(number)
-            if self._margin(number) > _rounding(bound, normal):
+        for number in range(len(self.bounds)):
+            if self._margin(number) > self._rounding(number):
                 continue
-            closing = float(normal @ self._whole(self.speed, 1))
+            closing = float(self._normal(number) @ self._whole(self.speed, 1))
             pull = self.contacts.pull(number, self.q, self.speed, self.t)
             if closing == 0.0 and pull < 0.0:
                 self.contacts.active.append(number)
@@ -218,9 +216,13 @@ class InputTravel:
 
     def _strike_touched(self) -> None:
         """Hit the stops that are touched at the start."""
-        for number, bound in enumerate(self.bounds):
-            if self._margin(number) <= _rounding(bound, self._normal(number)) and not self.ended:
+        for number in range(len(self.bounds)):
+            if self._margin(number) <= self._rounding(number) and not self.ended:
                 self._hit(number)
+
+    def _rounding(self, number: int) -> float:
+        """Up to which margin a stop is touched."""
+        return self.bounds[number].rounding(float(np.abs(self._normal(number)).max()))
 
     def _margin(self, number: int) -> float:
         """The margin of a stop now."""
@@ -297,7 +299,7 @@ class InputTravel:
         """A stop beyond which the motion would begin, and its margin there."""
         for number, bound in enumerate(self.bounds):
             margin = self._margin(number)
-            if margin < -_rounding(bound, self._normal(number)):
+            if margin < -self._rounding(number):
                 return bound, margin
         return None
 
@@ -351,11 +353,6 @@ class InputTravel:
         return self.dynamics.reduction.failing_load(near, far) or (
             "the accelerations have no bound there, or the inputs leave their reach"
         )
-
-
-def _rounding(bound: Bound, normal: Array) -> float:
-    """Up to which margin a stop is touched."""
-    return _TOUCHES * float(np.abs(normal).max()) + 8.0 * EPSILON * abs(bound.value)
 
 
 # ----------------------------------------------------------------------
