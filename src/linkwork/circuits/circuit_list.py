@@ -75,7 +75,10 @@ class Seeding:
         self.dead = dead_point_inputs(model, self.drive.path, self.drive.lead)
         intervals = self._intervals(value, sure)
         for k, interval in enumerate(intervals):
-            self._look_into(interval)
+            # another value where the list of one fails
+            self.unclear += not any(
+                self._visit_circuits(self._positions_at(value)) for value in interval
+            )
             if progress is not None:
                 progress((k + 1) / len(intervals))
 
@@ -96,11 +99,6 @@ class Seeding:
         if not self.dead.cover_all:
             found += [(further,) for further in self._further_inputs(value)]
         return found
-
-    def _look_into(self, interval: Interval) -> None:
-        """List the configurations at one value of an interval, at another where that fails."""
-        if not any(self._visit_circuits(self._positions_at(value)) for value in interval):
-            self.unclear += 1
 
     def _visit_circuits(self, found: Assemblies) -> bool:
         """Follow the circuits of all configurations; whether none is missing or left out."""

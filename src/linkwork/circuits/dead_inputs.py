@@ -218,7 +218,8 @@ class _Search:
             self._grade_curves(form, roots.curves)
         real = _real(form, roots.x, ALMOST_REAL)
         # multiple solutions are known to the square root of rounding: a wider tolerance
-        double = _real(form, _sharpen_roots(form, roots.multiple), ALMOST_DOUBLE)
+        sharp = [nearest_solution(system, x, _STEPS) for x in roots.multiple]
+        double = _real(form, np.array(sharp).reshape(roots.multiple.shape), ALMOST_DOUBLE)
         start = self.model.equations.start
         self.values += self._wrap_angle(form.positions(real, start)[:, -1].tolist())
         self.doubles += self._wrap_angle(
@@ -296,8 +297,3 @@ def _real(form: DeadPointForm, x: ComplexArray, within: float) -> ComplexArray:
     gap = np.abs(x[:, :m] - x[:, m : 2 * m].conj()).max(axis=1, initial=0.0)
     real: ComplexArray = x[gap < within * (1.0 + np.abs(x[:, : 2 * m]).max(axis=1, initial=0.0))]
     return real
-
-
-def _sharpen_roots(form: DeadPointForm, x: ComplexArray) -> ComplexArray:
-    """Multiple solutions (R, n), as well as rounding lets them be found."""
-    return np.array([nearest_solution(form.system, each, _STEPS) for each in x]).reshape(x.shape)

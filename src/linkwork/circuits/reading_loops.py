@@ -383,7 +383,9 @@ class _Drawing:
         rails = [self._rail(*slide) for slide in self._outwards()]
         if not self.places[self.joints.ground]:  # only a slide's line is fixed
             raise NotRead("no vector begins at a fixed link")
-        self._move_ground()
+        own = self.places[self.joints.ground]
+        for name in own:  # in the file's coordinates
+            own[name] += self.names.begin - self.joints.origin
         names, shapes = self.names.links, self.places
         return Linkage(
             name=self.loops.name,
@@ -403,12 +405,6 @@ class _Drawing:
         found = [(name, corner.places[link]) for name, corner in pins if link in corner.places]
         drawn = self.loops.links.get(self.names.links[link], ())
         return sorted(found, key=lambda pin: drawn.index(pin[0]) if pin[0] in drawn else len(drawn))
-
-    def _move_ground(self) -> None:
-        """Move the ground to the file's coordinates."""
-        own = self.places[self.joints.ground]
-        for name in own:
-            own[name] += self.names.begin - self.joints.origin
 
     def _outwards(self) -> Iterator[tuple[Slide, int, int]]:
         """Every slide with its guide and its sliding link.

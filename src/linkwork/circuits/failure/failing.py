@@ -10,7 +10,6 @@ import numpy as np
 
 from linkwork.circuits.failure.reach import (
     MOST_UNKNOWNS,
-    ElsewhereAt,
     ReachableRange,
     assembled_near,
     block_positions,
@@ -209,10 +208,6 @@ def root_beside_guess(block: Block, guess: Array, found: Array) -> Array | None:
 # Explain a failed position: open loops, remedies, nearest reachable input.
 
 
-#: How the positions that exist at given inputs are found, for every explanation.
-ELSEWHERE: ElsewhereAt = positions_elsewhere
-
-
 def no_position(
     model: Model, v: Array, status: Status, failed_block: int, options: NewtonOptions
 ) -> tuple[Status, Failure]:
@@ -245,7 +240,9 @@ def _explain(
     # the damped iteration is held everywhere where there is no position
     if trouble is NewtonTrouble.LOCAL_EXTREMUM and not exists:
         trouble = None
-    what = status.value if trouble is None else f"{_head(status)}: {trouble.value}"
+    what = status.value
+    if trouble is not None:
+        what = f"{what.partition(':')[0]}: {trouble.value}"
     meant: dict[str, float] = {}
     if miss.closed:
         meant = _name_unknowns(model, block, miss.v[: len(block.unknowns)])
@@ -408,10 +405,6 @@ def _nearest_limit(
     return ReachableRange(inputs=inputs, kind=kind, proved=False, first_dead_point=None)
 
 
-def _head(status: Status) -> str:
-    return status.value.partition(":")[0]
-
-
 def _labels(model: Model, block: Block) -> tuple[str, ...]:
     return tuple(model.equations.labels[e] for e in block.equations)
 
@@ -503,7 +496,7 @@ def _failure(
     model: Model, inputs: Array, reach: ReachableRange | None = None, **parts: object
 ) -> Failure:
     """The explanation with the positions that exist at the inputs (p,)."""
-    found = ELSEWHERE(model, inputs)
+    found = positions_elsewhere(model, inputs)
     everywhere = model.equations.start[None, :][:0] if found is None else found.v
     n = model.compiled.solver.unknowns
     scales = np.array([model.units.scale(Kind(u.kind)) for u in model.equations.unknowns])

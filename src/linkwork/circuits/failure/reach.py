@@ -261,10 +261,6 @@ class Elsewhere:
     names: tuple[str, ...] = ()
 
 
-#: Finds the positions that exist for given inputs (p,), internal units; ``None``: not searched.
-ElsewhereAt = Callable[[Model, Array], Elsewhere | None]
-
-
 def positions_elsewhere(model: Model, inputs: Array) -> Elsewhere | None:
     """The positions of a mechanism for the inputs (p,): its configurations where they can be
     listed, else those that Newton-Raphson finds from many starts, block by block.
@@ -314,19 +310,15 @@ def block_positions(block: Block, v: Array) -> tuple[Array, bool]:
         starts = form.unknowns(roots.x, np.repeat(known, len(roots.x), axis=0), start[:n])
         polished, good = _solve_starts(block, v, starts)
         return polished, bool(good.all()) and roots.grade.complete
-    linear = _is_linear(block)
+    table = block.system
+    # relative angles alone have one position
+    linear = isinstance(table, LoopTable) and not table.loops.rows and not table.functions
     found, _ = _solve_starts(block, v, start[None, :n] if linear else _starts(block, start[:n]))
     distinct: list[Array] = []
     for x in found:
         if all(distance(block, x, other) > _SAME_POSITION for other in distinct):
             distinct.append(x)
     return np.array(distinct).reshape(-1, n), linear and len(distinct) == 1
-
-
-def _is_linear(block: Block) -> bool:
-    """Relative angles alone: one position."""
-    table = block.system
-    return isinstance(table, LoopTable) and not table.loops.rows and not table.functions
 
 
 def _solve_starts(block: Block, v: Array, starts: Array) -> tuple[Array, BoolArray]:

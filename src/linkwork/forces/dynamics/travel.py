@@ -71,7 +71,8 @@ class Travel(Passage):
                     self.ended = self._unbounded()
                 continue
             rougher = rough if following <= step.h else math.inf
-            event = self._event(step)
+            margins = margins_on(self.leg, self.bounds, self.rubbing, self.gain)
+            event = first_event(step, step.t + step.h, margins, self.reduction.switch_count)
             end = step.t + step.h if event is None else self._end(event)
             self._take(step, end)
             h = following if event is None and step.h < short else max(following, h)
@@ -92,10 +93,6 @@ class Travel(Passage):
         if math.isfinite(pull) and pull > 0.0:
             times.append(math.sqrt((high - low) / pull))
         return max(_FIRST * min(times), 10.0 * _SHORTEST * self.until)
-
-    def _event(self, step: Step) -> Event | None:
-        margins = margins_on(self.leg, self.bounds, self.rubbing, self.gain)
-        return first_event(step, step.t + step.h, margins, self.reduction.switch_count)
 
     def _end(self, event: Event) -> float:
         """Stops are met just before, all others just after."""

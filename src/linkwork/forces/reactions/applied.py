@@ -171,7 +171,7 @@ class AppliedLoads:
                 centre=centre,
                 place=place.v,
                 # weight and inertia of eq. (71) as one load
-                force=as_complex(mass * (fall - bend)),
+                force=mass * (fall - bend) + 0j,
                 torque=-inertia * turned,
                 mass=mass,
                 inertia=inertia,
@@ -187,12 +187,6 @@ class AppliedLoads:
 def virtual_work(load: AnyArray, moved: Jet) -> Array:
     """The work of a force or torque per unit of what the geometry moves with, (B,)."""
     found: Array = (np.conj(load) * moved.d1).real
-    return found
-
-
-def as_complex(force: Any) -> ComplexArray:
-    """A force that may be real where nothing moves."""
-    found: ComplexArray = force + 0j
     return found
 
 

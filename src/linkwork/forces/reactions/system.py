@@ -299,7 +299,9 @@ def solve_forces(model: Model, solved: Solved) -> ForceRows:
                 apply_load(load, applied)
             bodies = read_bodies(geometry, applied)
         by_work, largest = efforts(applied)
-        found = _Solution(geometry, applied, _has_rates(by_work, geometry))
+        # rates at a dead point are infinite, or huge if the row misses it by rounding
+        has_rates = (geometry.fastest < _UNBOUNDED) & np.isfinite(by_work).all(axis=0)
+        found = _Solution(geometry, applied, has_rates)
         stopped = undetermined_stops(geometry, bodies)
         found.regular &= ~stopped
         zero = np.zeros_like(by_work)
@@ -323,7 +325,11 @@ def solve_forces(model: Model, solved: Solved) -> ForceRows:
         for name, kind, about, value in totals(geometry, applied):
             point, pushed, _ = name.partition(".load.")
             found.add(name, kind, about, value, pin=(point, "", "") if pushed else ())
-    lost = ~np.isfinite(next(iter(_anything(geometry))))
+    moving = [p for p in geometry.points if p not in geometry.model.equations.fixed]
+    # rows without a position have no place of any point
+    lost = np.zeros(geometry.rows, dtype=bool)
+    if moving:
+        lost = ~np.isfinite(np.abs(geometry.place(moving[0]).v))
     status = np.where(found.regular, ForceStatus.FOUND.code, ForceStatus.NO_RATES.code)
     undefined = {formula: rows & ~lost for formula, rows in applied.undefined.items()}
     for rows in undefined.values():
@@ -337,20 +343,6 @@ def solve_forces(model: Model, solved: Solved) -> ForceRows:
     return ForceRows(
         values=found.values, status=status.astype(np.int8), proved=found.proved, undefined=undefined
     )
-
-
-def _anything(geometry: Geometry) -> Iterator[Array]:
-    for point in geometry.points:
-        if point not in geometry.model.equations.fixed:
-            yield np.abs(geometry.place(point).v)
-    yield np.zeros(geometry.rows)
-
-
-def _has_rates(by_work: Array, geometry: Geometry) -> BoolArray:
-    """Rows in which the input moves the mechanism at a finite rate."""
-    # rates at a dead point are infinite, or huge if the row misses it by rounding
-    found: BoolArray = (geometry.fastest < _UNBOUNDED) & np.isfinite(by_work).all(axis=0)
-    return found
 
 
 def _add_reactions(found: _Solution, bodies: FreeBodies) -> FrictionEfforts:
