@@ -21,8 +21,8 @@ from linkwork.circuits.homotopy.path_tracking import (
     ARRIVED,
     BOLD,
     CAREFUL,
-    LOST,
     SINGULAR,
+    Ends,
     Homotopy,
     PathOptions,
     Paths,
@@ -136,22 +136,6 @@ class _Goal:
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
-class _Ends:
-    """Where paths ended: finite regular, infinite, singular, failed."""
-
-    x: ComplexArray
-    regular: BoolArray
-    infinite: BoolArray
-    singular: BoolArray
-    failed: BoolArray
-
-
-def _all_regular(x: ComplexArray) -> _Ends:
-    no = np.zeros(len(x), dtype=bool)
-    return _Ends(x=x, regular=~no, infinite=no, singular=no, failed=no)
-
-
-@dataclass(frozen=True, kw_only=True, eq=False)
 class Solved(Generic[S]):
     """A random member of a family with its solutions; ``sure`` that these are all."""
 
@@ -178,10 +162,11 @@ def isolated_roots(system: S, family: RootFamily[S], known: ComplexArray | None 
     """
     generic = random_member(family)
     if known is not None and len(known) == len(generic.x):
-        return _roots(system, _all_regular(known), generic)
+        no = np.zeros(len(known), dtype=bool)
+        return _roots(system, Ends(x=known, regular=~no, infinite=no, singular=no), generic)
     rng = family.generator(1)
     expected = len(generic.x)
-    best: _Ends | None = None
+    best: Ends | None = None
     for attempt in range(_ATTEMPTS):
         care = CAREFUL if attempt else BOLD if expected <= _FEW else PathOptions()
         ends = _follow_paths(family, generic, system, rng, care, nearest=not attempt)
@@ -189,17 +174,17 @@ def isolated_roots(system: S, family: RootFamily[S], known: ComplexArray | None 
             # two independent sets of paths that agree: missing solutions are at infinity
             agreed = best is not None and _agree(ends, best)
             best = ends
-            if ends.regular.all() or (agreed and not ends.failed.any()):
+            if ends.regular.all() or (agreed and not ends.lost.any()):
                 break
     assert best is not None
     return _roots(system, best, generic)
 
 
-def _quality(ends: _Ends) -> tuple[int, int]:
-    return (-int(ends.failed.sum()), int(ends.regular.sum()))
+def _quality(ends: Ends) -> tuple[int, int]:
+    return (-int(ends.lost.sum()), int(ends.regular.sum()))
 
 
-def _agree(a: _Ends, b: _Ends) -> bool:
+def _agree(a: Ends, b: Ends) -> bool:
     """Whether two sets of paths found the same regular solutions."""
     x, y = a.x[a.regular], b.x[b.regular]
     return len(x) == len(y) == len(distinct_solutions(np.concatenate([x, y])))
@@ -247,7 +232,7 @@ def solve_random_member(family: RootFamily[S], purpose: int = 0) -> Solved[S]:
         ends = _classify_ends(system, start, track(start, start.starts(), CAREFUL))
         found = ends.x[ends.regular]
         x = distinct_solutions(np.concatenate([x, found])) if attempt else distinct_solutions(found)
-        clean += not (ends.failed | ends.singular | _meeting(ends)).any()
+        clean += not (ends.lost | ends.singular | _meeting(ends)).any()
         if (clean and len(x)) or clean == _LOOPS:
             break
     # without solutions closed paths prove nothing: all paths have to run to infinity twice
@@ -281,30 +266,29 @@ def _follow_paths(
     options: PathOptions,
     *,
     nearest: bool = False,
-) -> _Ends:
+) -> Ends:
     """Paths from all solutions of one system; those that were lost or met once more, with care."""
     homotopy = family.between(generic.system, goal, rng, nearest=nearest)
     start = homotopy.starts(generic.x)
     paths = track(homotopy, start, options)
     ends = _classify_ends(goal, homotopy, paths)
-    again = ends.failed | _meeting(ends)
+    again = ends.lost | _meeting(ends)
     if again.any() and options is not CAREFUL:
         once_more = track(homotopy, start[again], CAREFUL)
         w, near, state = paths.w.copy(), paths.near.copy(), paths.state.copy()
         w[again], near[again], state[again] = once_more.w, once_more.near, once_more.state
         joined = Paths(w=w, near=near, state=state, steps=paths.steps + once_more.steps)
         ends = _classify_ends(goal, homotopy, joined)
-        again = ends.failed | _meeting(ends)
+        again = ends.lost | _meeting(ends)
     return replace(
         ends,
         regular=ends.regular & ~again,
         infinite=ends.infinite & ~again,
         singular=ends.singular & ~again,
-        failed=again,
     )
 
 
-def _classify_ends(system: PolynomialSystem, homotopy: _ToSystem, paths: Paths) -> _Ends:
+def _classify_ends(system: PolynomialSystem, homotopy: _ToSystem, paths: Paths) -> Ends:
     """Ends of paths in the system's unknowns: regular, infinite, singular or failed."""
     (x, scale), (_, before) = homotopy.points(paths.w), homotopy.points(paths.near)
     singular = paths.state == SINGULAR
@@ -323,12 +307,11 @@ def _classify_ends(system: PolynomialSystem, homotopy: _ToSystem, paths: Paths) 
     for k in np.flatnonzero(finite & ~regular):
         infinite[k] = _multiple_at_infinity(homotopy, paths.w[k], float(scale[k]))
     finite &= ~infinite
-    return _Ends(
+    return Ends(
         x=x,
         regular=regular,
         infinite=infinite,
         singular=(singular & ~infinite) | (finite & ~regular),
-        failed=paths.state == LOST,
     )
 
 
@@ -343,7 +326,7 @@ def _multiple_at_infinity(homotopy: _ToSystem, w: ComplexArray, scale: float) ->
     return bool(sharp[0] < max(_FINITE_MULTIPLE, _FADING * scale))
 
 
-def _meeting(ends: _Ends) -> BoolArray:
+def _meeting(ends: Ends) -> BoolArray:
     """Paths that ended at the same regular solution: one of them has jumped."""
     met = np.zeros(len(ends.x), dtype=bool)
     place = np.flatnonzero(ends.regular)
@@ -363,7 +346,7 @@ def _near_another(x: ComplexArray) -> BoolArray:
     return near
 
 
-def _roots(system: S, ends: _Ends, generic: Solved[S]) -> Roots:
+def _roots(system: S, ends: Ends, generic: Solved[S]) -> Roots:
     multiple = distinct_solutions(ends.x[ends.singular], 1e-2)
     curved = np.array([_on_a_curve(system, x) for x in multiple], dtype=bool)
     return Roots(
@@ -372,7 +355,7 @@ def _roots(system: S, ends: _Ends, generic: Solved[S]) -> Roots:
         paths=len(generic.x),
         at_infinity=int(ends.infinite.sum()),
         singular=int(ends.singular.sum()),
-        failed=int(ends.failed.sum()),
+        failed=int(ends.lost.sum()),
         expected=len(generic.x),
         sure=generic.sure,
         continuum=bool(curved.any()),
