@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from linkwork.circuits import failure as why
+from linkwork import wings
 from linkwork.circuits.arcs import Arc, Explorer, is_regular, positions_at_value
 from linkwork.circuits.assembling import Assemblies, positions_at
 from linkwork.circuits.branches import CurveBranch, weakest_place
@@ -220,7 +220,7 @@ class _Circuits:
         start = self.seeding.start
         if start is None or not start.status.ok:
             return None if start is None else start.failure
-        return why.without_circuit(self.model, start.v)
+        return wings.use("circuits.failure.failing").without_circuit(self.model, start.v)
 
     def _groups(self) -> list[_Group]:
         """Arcs joined by the change points they share, in the order found."""

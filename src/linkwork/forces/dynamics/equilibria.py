@@ -223,7 +223,7 @@ def equilibria(
     Raises
     ------
     InputError
-        As :func:`linkwork.forces.dynamics.simulate`.
+        As :func:`linkwork.forces.dynamics.simulation.simulate`.
     """
     policy = straight_or_stop(change_points)
     check_loaded(model)
