@@ -79,20 +79,17 @@ def start_speeds(model: Model, given: Number | Mapping[str, Number]) -> Array:
     """The speed of every input at the start, [rad/s] or [length/s], (p,)."""
     description = model.description
     names = [variable.name for variable in model.equations.inputs]
-    if isinstance(given, Mapping):
-        wanted = {canonical(name): value for name, value in given.items()}
-    elif len(names) == 1 or given not in (0, "0"):
-        if len(names) > 1:
+    if not isinstance(given, Mapping):
+        if len(names) > 1 and given not in (0, "0"):
             raise InputError(
                 f"{model_name(model)} has {len(names)} inputs: name the start speed of each, "
                 f"for example {names[0]}={given}"
             )
-        wanted = {canonical(names[0]): given}
-    else:
-        wanted = {}
+        given = {names[0]: given} if len(names) == 1 else {}
     known = {canonical(name): k for k, name in enumerate(names)}
     speeds = np.zeros(len(names))
-    for name, value in wanted.items():
+    for name, value in given.items():
+        name = canonical(name)
         if name not in known:
             raise InputError(
                 f'start speed: there is no input "{name}" {choices("inputs", names, name)}'
