@@ -165,13 +165,14 @@ class AppliedLoads:
             )
         )
         falling = mass * (velocity * np.conj(fall)).real
+        force: ComplexArray = mass * (fall - bend) + 0j  # real where nothing moves
         self.masses.append(
             Body(
                 link=link,
                 centre=centre,
                 place=place.v,
                 # weight and inertia of eq. (71) as one load
-                force=mass * (fall - bend) + 0j,
+                force=force,
                 torque=-inertia * turned,
                 mass=mass,
                 inertia=inertia,
