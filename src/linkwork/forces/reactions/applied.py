@@ -165,14 +165,14 @@ class AppliedLoads:
             )
         )
         falling = mass * (velocity * np.conj(fall)).real
-        force: ComplexArray = mass * (fall - bend) + 0j  # real where nothing moves
+        force: Any = mass * (fall - bend)  # real where nothing moves
         self.masses.append(
             Body(
                 link=link,
                 centre=centre,
                 place=place.v,
                 # weight and inertia of eq. (71) as one load
-                force=force,
+                force=force + 0j,
                 torque=-inertia * turned,
                 mass=mass,
                 inertia=inertia,
