@@ -1,7 +1,7 @@
 """The wings around the core: what each of them adds, loaded on first use.
 
-The core imports no wing. It calls them by name, ``wings.use("forces.dynamics").simulate(…)``, and
-finds what they add in this table. A package outside adds a wing by an entry point of the group
+The core imports no wing. It calls them by name, ``wings.use("circuits.inverting").inversion(…)``,
+and finds what they add in this table. A package outside adds a wing by an entry point of the group
 ``linkwork.wings`` that names a :class:`Wing`.
 """
 

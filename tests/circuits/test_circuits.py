@@ -12,9 +12,7 @@ import numpy as np
 import pytest
 
 import linkwork as lw
-from linkwork.circuits import arcs as walks, circuit_list
-from linkwork.circuits.circuit_list import Seeding
-from linkwork.core.numerics import curve_proof
+from linkwork.circuits import branches, circuit_list
 from tests.oracles.four_bar import FourBar
 from tests.oracles.trains import Loop, train
 from tests.thinned import thinned
@@ -258,24 +256,21 @@ def test_curves_of_bold_steps_without_a_proof_are_followed_again(
     name: str, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     expected = lw.example(name).circuits().to_dict()
-    proofs, bold = curve_proof.prove_curves, []
+    trace, prove, careful = branches.trace, branches.prove_curve, []
 
-    def refused(*arguments: Any, **options: Any) -> Any:
-        found = proofs(*arguments, **options)
-        bold.extend(found)
-        return [replace(proof, legs=~proof.legs) for proof in found]
+    def traced(*arguments: Any) -> Any:
+        careful.append(arguments[3] is branches._CAREFUL)
+        return trace(*arguments)
 
-    monkeypatch.setattr(walks, "prove_curves", refused)
-    seeds, look = [], Seeding._look
+    def refused(*arguments: Any) -> Any:
+        found = prove(*arguments)
+        return found if careful[-1] else replace(found, legs=~found.legs)
 
-    def counted(self: Seeding, progress: Any) -> None:
-        seeds.append(1)
-        look(self, progress)
-
-    monkeypatch.setattr(Seeding, "_look", counted)
+    monkeypatch.setattr(branches, "trace", traced)
+    monkeypatch.setattr(branches, "prove_curve", refused)
     found = lw.example(name).circuits().to_dict()
-    assert len(seeds) == 2
-    assert bold
+    # every curve twice
+    assert careful == [False, True] * (len(careful) // 2)
     for one, other in zip(expected["circuits"], found["circuits"], strict=True):
         assert one["certified"]
         assert other["certified"]

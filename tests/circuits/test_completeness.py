@@ -7,6 +7,7 @@ import pytest
 
 import linkwork as lw
 from linkwork import Completeness
+from linkwork.circuits.arcs import is_regular
 from linkwork.circuits.dead_inputs import intervals_between
 from tests.campaigns.circuits import dead_inputs_of, judge_circuits
 from tests.campaigns.motion import FAMILIES, random_mechanism
@@ -113,7 +114,10 @@ def test_where_dead_points_may_be_missing_the_reason_is_told() -> None:
 def test_lists_that_fail_in_an_interval_are_tried_elsewhere_then_told(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
-    monkeypatch.setattr("linkwork.circuits.circuit_list.REGULAR_CONDITION", 0.0)
+    monkeypatch.setattr(
+        "linkwork.circuits.circuit_list.is_regular",
+        lambda leads, v, most=0.0: is_regular(leads, v, most),
+    )
     found = lw.example("rapier-drive-limited").circuits(certify=False)
     assert found.completeness is Completeness.NOT_PROVED
     assert found.message == (

@@ -10,7 +10,6 @@ import pytest
 
 import linkwork as lw
 from benchmarks.motions.machines import SQUEEZER_ANGLE, WINDOW_PLACES, squeezer, windows
-from linkwork.forces.dynamics.simulation import simulate
 
 PENDULUM: dict[str, Any] = {
     "length": "m",
@@ -314,14 +313,6 @@ def test_efforts_are_those_of_the_motor_less_its_flywheel() -> None:
     torque = 9 * (1 - speed / (90 * math.tau / 60)) - 0.2 * motion["crank.acceleration"]
     smooth = np.array([word == "" for word in motion.limit])
     assert motion["crank.effort"][smooth] == pytest.approx(torque[smooth], abs=1e-9)
-
-
-def test_a_further_force_acts_as_a_load_would() -> None:
-    pushed = lw.linkage(**SLIDER, loads=[lw.Load(point="B", link="block", force=(6, 0))])
-    free = lw.linkage(**SLIDER)
-    motion = simulate(free.model, until=1, step=0.5, forcing=[lambda state: np.full(
-        state.moving.rows, 6.0)])  # fmt: skip
-    assert motion["d"] == pytest.approx(pushed.simulate(1, step=0.5)["d"], abs=1e-13)
 
 
 def test_a_motion_ends_at_a_change_point_unless_it_goes_straight() -> None:

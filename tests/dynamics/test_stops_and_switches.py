@@ -11,7 +11,7 @@ import pytest
 
 import linkwork as lw
 from linkwork.forces.dynamics import collocation as panels, reduced_leg
-from linkwork.forces.reactions import forces_of_motion
+from linkwork.forces.reactions.solving import forces_of_motion
 
 BLOCK: dict[str, Any] = {
     "length": "m",

@@ -290,14 +290,14 @@ def test_of_two_equally_near_values_the_one_ahead_is_named_and_whole_turns_are_k
 def test_the_positions_elsewhere_are_asked_of_one_function(monkeypatch: pytest.MonkeyPatch) -> None:
     v = np.radians([[10.0, 20.0, 0.0]])
     found = Elsewhere(v=v, complete=True)
-    monkeypatch.setattr(failing, "ELSEWHERE", lambda model, inputs: found)
+    monkeypatch.setattr(failing, "positions_elsewhere", lambda model, inputs: found)
     position = four_bar(2, 5, 2, 4).solve(at=0)
     assert position.message.endswith("; 1 configuration exists there: coupler = 10°, rocker = 20°")
     none = Elsewhere(v=v[:0], complete=True, likely=True)
-    monkeypatch.setattr(failing, "ELSEWHERE", lambda model, inputs: none)
+    monkeypatch.setattr(failing, "positions_elsewhere", lambda model, inputs: none)
     position = four_bar(2, 5, 2, 4).solve(at=0)
     assert position.message.endswith("; no configuration exists there (with probability one)")
-    monkeypatch.setattr(failing, "ELSEWHERE", lambda model, inputs: None)
+    monkeypatch.setattr(failing, "positions_elsewhere", lambda model, inputs: None)
     position = four_bar(2, 5, 2, 4).solve(at=0)
     assert position.message.endswith("; nearest reachable input: crank = 46.56746344° (dead point)")
 

@@ -8,9 +8,9 @@ import numpy as np
 import pytest
 
 import linkwork as lw
-from linkwork.circuits.arcs import Explorer, Walks
+from linkwork.circuits.arcs import Explorer, is_regular
 from linkwork.circuits.assembling import positions_at
-from linkwork.circuits.followed_circuit import explorer_of, is_regular
+from linkwork.circuits.followed_circuit import explorer_of
 from linkwork.core.foundation.arrays import Array
 from linkwork.core.motion.following import Drive
 from tests.oracles.trains import Loop, train
@@ -37,7 +37,7 @@ def _both(mechanism: lw.Mechanism) -> tuple[Explorer, Explorer]:
     """All arcs, with dead points proved, and without."""
     drive = Drive.of_circuits(mechanism.model)
     seeds = _seeds(drive)
-    proved, plain = Explorer(Walks(drive, certify=False)), explorer_of(drive)
+    proved, plain = Explorer(drive, certify=False), explorer_of(drive)
     return _visited(proved, seeds), _visited(plain, seeds)
 
 
@@ -95,7 +95,7 @@ def test_blocks_that_cross_nearly_together_are_told_apart() -> None:
 
 def test_arcs_on_which_redundant_links_do_not_fit_are_not_followed() -> None:
     drive = Drive.of_circuits(lw.example("dixon-two").model)
-    explorer = _visited(Explorer(Walks(drive, certify=False)), _seeds(drive))
+    explorer = _visited(Explorer(drive, certify=False), _seeds(drive))
     assert len(explorer.arcs) > 4
     assert all(explorer.fits(arc) for arc in explorer.arcs)
 

@@ -10,7 +10,8 @@ import numpy as np
 import pytest
 
 import linkwork as lw
-from linkwork.circuits.classification import Seen, as_linkage, block_groups, classify
+from linkwork.circuits.classification import as_linkage, block_groups, classify
+from linkwork.circuits.reading_loops import Seen
 
 FOUR_BAR = {
     "ground": ("O", "C"),

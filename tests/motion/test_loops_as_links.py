@@ -10,7 +10,8 @@ import pytest
 from hypothesis import given, strategies as st
 
 import linkwork as lw
-from linkwork.circuits.classification import Seen, as_linkage
+from linkwork.circuits.classification import as_linkage
+from linkwork.circuits.reading_loops import Seen
 from linkwork.core.mechanism.linkage import Linkage
 from linkwork.core.mechanism.loops import Loops
 from tests.equations.linkages import LINKAGES

@@ -12,7 +12,7 @@ from linkwork.circuits.homotopy.bilinear_homotopy import normal_numbers
 from linkwork.circuits.homotopy.monodromy import (
     Member,
     first_of_each,
-    solve_by_monodromy,
+    solve_further,
     trace_defect,
 )
 from linkwork.circuits.homotopy.parameter_roots import roots_at
@@ -60,7 +60,9 @@ class Quintic:
 
 @pytest.fixture(scope="module")
 def solved() -> Member:
-    return solve_by_monodromy(Quintic(), np.random.default_rng(1), track)
+    rng = np.random.default_rng(1)
+    c, one = Quintic().random_member(rng)
+    return solve_further(Quintic(), Member(parameters=c, x=one[None]), rng, track)
 
 
 def test_closed_paths_find_all_solutions(solved: Member) -> None:

@@ -119,4 +119,4 @@ def test_systems_of_small_integers_have_no_more_solutions_than_their_bound(seed:
     bound = structure_of(system).bound_of(system, rounding, len(x))
     assert not proofs.apart or proofs.holds.sum() <= bound.number
     if proofs.apart and proofs.holds.sum() == bound.number:
-        assert not (ends.singular | ends.failed).any()
+        assert not (ends.singular | ends.lost).any()

@@ -1,4 +1,4 @@
-"""Curves along which the input turns fully, followed and proved as sweeps are."""
+"""Curves of positions, traced one after the other and proved together."""
 
 from __future__ import annotations
 
@@ -11,201 +11,26 @@ from linkwork.circuits.branches import (
     CurveBranch,
     TracedCurve,
     branches_of,
-    confirmed,
-    trace_boldly,
     trace_with_proof,
 )
 from linkwork.core.foundation.arrays import Array
-from linkwork.core.foundation.rounding import CLOSER_TANGENT, EPSILON, REGULAR_CONDITION
+from linkwork.core.foundation.rounding import CLOSER_TANGENT, REGULAR_CONDITION
 from linkwork.core.foundation.statuses import CircuitEnd, Status
-from linkwork.core.foundation.units import FULL_TURN
-from linkwork.core.motion.following import Drive, track_to
+from linkwork.core.motion.following import Drive
 from linkwork.core.motion.model import FITS, misfit
-from linkwork.core.numerics.branch_tracking import BOLD, Node, node_at, rows_on_track
 from linkwork.core.numerics.change_point import Crossing
-from linkwork.core.numerics.curve_proof import ProvenCurve, prove_curve, prove_curves
-from linkwork.core.numerics.curve_tracing import Curve, Leg, tangents_apart
+from linkwork.core.numerics.curve_tracing import tangents_apart
 from linkwork.core.numerics.local_parametrization import (
-    Parametrization,
     Parametrizations,
     apart,
     coincide,
     fastest_leader,
     near,
     same_position,
-    whole_turns,
 )
 from linkwork.core.numerics.newton import newton
-from linkwork.core.numerics.path_proof import prove_path
-from linkwork.core.numerics.position_proof import rounding_of_inputs
-from linkwork.core.numerics.system import SolvedRows
 
 _IMPROVED = 1e-4  # weighted: how far a crossing's other blocks are moved at most
-_STEPS = 24  # of a turn, besides those that the march takes in between
-
-
-def full_turn(drive: Drive, start: Array) -> TracedCurve | None:
-    """The curve through a position (N,) that closes after one turn of the input, with its proof.
-
-    ``None`` where the input does not make a whole turn, and where that is not proved: at dead
-    points, near change points, and where the curve closes after several turns only.
-    """
-    leads, p = drive.leads, drive.leads.parameter
-    own = leads.with_parameter(p)
-    if not leads.is_angle[p] or own is None or not own.provable or not drive.solver.unknowns:
-        return None
-    here = own.node(start)
-    t = here.t + np.linspace(0.0, FULL_TURN, _STEPS + 1)
-    # whole turns are no floats: proofs hold for the exact value, too
-    slip = 4.0 * EPSILON * (abs(here.t) + FULL_TURN)
-    anchor = node_at(drive.solver, drive.path, here.t, start)
-    rows = _proved_rows(drive, anchor, t, slip * np.abs(drive.path.rate))
-    if rows is None or not _closes(drive, rows):
-        return None
-    leg = Leg(led=own, nodes=(here, *_nodes_behind(own, here, t, rows)))
-    return TracedCurve(
-        curve=Curve(legs=(leg,), end=CircuitEnd.CLOSED, passes=((0, rows.v[-1]),)),
-        proof=ProvenCurve(
-            legs=np.ones(1, dtype=bool),
-            junctions=np.zeros(0, dtype=bool),
-            closed=True,
-            steps=_STEPS,
-        ),
-        turns=(),
-    )
-
-
-def _proved_rows(drive: Drive, anchor: Node, t: Array, spread: Array) -> SolvedRows | None:
-    """Rows at values of t from an anchor on, joined to it by proved steps; ``None`` if not all are.
-
-    ``spread`` (p,): how far inputs may be from their exact values, besides their rounding.
-    """
-    solver, path = drive.solver, drive.path
-    track = track_to(solver, path, anchor, [float(t[-1])], BOLD)
-    if track.ends:
-        return None
-    rows = rows_on_track(solver, path, track, t)
-    if (rows.status != Status.CONVERGED.code).any():
-        return None
-    apart = rounding_of_inputs(rows.v, solver.unknowns) + spread
-    proof = prove_path(solver, path, rows.with_columns(input_radius=apart), anchor=0)
-    if not proof.connected_to(0).all():
-        return None
-    position = proof.position
-    return rows.with_columns(
-        radius=position.radius, uniqueness_radius=position.least_uniqueness_radius
-    )
-
-
-def _closes(drive: Drive, rows: SolvedRows) -> bool:
-    """Whether the last of proved rows is proved to be the first, modulo whole turns.
-
-    The last position is at most its radius away from the last row's numbers. If these are so near
-    to the first row's that it lies within the first uniqueness radius, it is the first position:
-    no other one lies there.
-    """
-    first, last = rows.v[0], rows.v[-1]
-    turns = whole_turns(drive.leads, first, last)
-    if not drive.leads.repeats_after(turns):
-        return False
-    gap = np.abs(last - FULL_TURN * turns - first) + 4.0 * EPSILON * np.abs(last)
-    away = float((gap / drive.leads.scale)[: drive.solver.unknowns].max())
-    return away + float(rows.radius[-1]) < float(rows.uniqueness_radius[0])
-
-
-def _nodes_behind(own: Parametrization, here: Node, t: Array, rows: SolvedRows) -> list[Node]:
-    """Proved rows as nodes; det J keeps its sign along proved steps."""
-    v, first, second = (x[:, own.order] for x in (rows.v, rows.first, rows.second))
-    return [
-        Node(
-            t=at,
-            v=v[k],
-            first=first[k],
-            second=second[k],
-            orientation=here.orientation,
-            condition=float(rows.condition[k]),
-            nearness=float(rows.condition[k]),  # at most that
-        )
-        for k, at in enumerate(t.tolist())
-        if k
-    ]
-
-
-# ----------------------------------------------------------------------
-# Curves of positions, traced one after the other and proved together.
-
-
-_HALVINGS = 12  # of a bold step: one that needs more is traced again with careful ones
-
-
-class Walks:
-    """The curve from each place and heading, traced once.
-
-    Curves are traced boldly at first, and proved together by :meth:`settle`: few large arrays take
-    far less time than many small ones. From then on each is proved at once. Where compiled code
-    proves a whole turn of the input, nothing remains to be done. ``prove_turns``: whether to prove
-    where dead points are.
-    """
-
-    def __init__(self, drive: Drive, certify: bool, *, prove_turns: bool = True) -> None:
-        self.drive, self.leads, self.certify = drive, drive.leads, certify
-        self.prove_turns = prove_turns
-        self._known: dict[tuple[bytes, bytes], TracedCurve] = {}
-        self._open: dict[tuple[bytes, bytes], tuple[Array, float | Array]] = {}
-        self._proved: dict[int, TracedCurve] = {}
-        self._turned: dict[int, Array] = {}
-        self._settled = not certify
-
-    def walk(self, start: Array, heading: float | Array) -> TracedCurve:
-        """The curve from a position (N,) on; its proof may still have to be made."""
-        key = start.tobytes(), np.asarray(heading, dtype=float).tobytes()
-        forwards = isinstance(heading, float) and heading > 0.0
-        if key not in self._known and self.certify and forwards:
-            turned = full_turn(self.drive, start)
-            if turned is not None:
-                self._known[key] = turned
-                self._turned[id(turned.curve)] = start
-        if key not in self._known:
-            found = trace_boldly(
-                self.leads, start, heading, self.certify, prove_turns=self.prove_turns
-            )
-            if self.certify and found.curve.legs:
-                if self._settled:
-                    proof = prove_curve(self.leads, found.curve)
-                    found = confirmed(self.leads, start, heading, found, proof)
-                else:
-                    self._open[key] = start, heading
-            self._known[key] = found
-        return self._known[key]
-
-    def settle(self) -> bool:
-        """Prove all curves; whether all of them remain. Others were traced again with care."""
-        remain = True
-        found = [self._known[key] for key in self._open]
-        proofs = prove_curves(self.leads, [one.curve for one in found], halvings=_HALVINGS)
-        for (key, place), one, proof in zip(self._open.items(), found, proofs, strict=True):
-            after = confirmed(self.leads, *place, one, proof)
-            self._known[key] = self._proved[id(one.curve)] = after
-            remain &= after.curve is one.curve
-        self._open.clear()
-        self._settled = True
-        return remain
-
-    def with_proof(self, walk: TracedCurve) -> TracedCurve:
-        """A curve that remained, as it was settled."""
-        return self._proved.get(id(walk.curve), walk)
-
-    def stepwise(self, walk: TracedCurve) -> TracedCurve:
-        """A curve followed in plain numbers even if compiled code has proved it.
-
-        So the positions that are shown do not depend on what this process has loaded, unless plain
-        numbers do not close the curve: then that of compiled code remains, which is proved closed.
-        """
-        start = self._turned.get(id(walk.curve))
-        if start is None:
-            return walk
-        found = trace_with_proof(self.leads, start, 1.0, self.certify)
-        return found if found.curve.end.closed and not found.turns else walk
 
 
 # ----------------------------------------------------------------------
@@ -250,17 +75,12 @@ class Arc:
 class Explorer:
     """All curves found so far, and the change points between them.
 
-    Parameters
-    ----------
-    walks : Walks
+    ``prove_turns``: whether to prove where dead points are.
     """
 
-    def __init__(self, walks: Walks) -> None:
-        self.walks, self.leads = walks, walks.leads
-        self.restart()
-
-    def restart(self) -> None:
-        """Forget everything but the walks."""
+    def __init__(self, drive: Drive, certify: bool, *, prove_turns: bool = True) -> None:
+        self.drive, self.leads, self.certify = drive, drive.leads, certify
+        self.prove_turns = prove_turns
         self.arcs: list[Arc] = []
         self.crossings: list[Crossing] = []
         self._covered: set[tuple[int, int, float]] = set()
@@ -268,15 +88,7 @@ class Explorer:
 
     def solved_branches(self, arc: Arc) -> tuple[CurveBranch, ...]:
         """The branches of an arc, all their positions solved."""
-        up = self.walks.stepwise(arc.up)
-        return tuple(_branches(self.leads, up, arc.down, solved=True))
-
-    def settle(self) -> bool:
-        """Prove all arcs; false if one was replaced, so that others may follow from it."""
-        remain = self.walks.settle()
-        if remain:
-            self.arcs = [_with_proofs(arc, self.walks) for arc in self.arcs]
-        return remain
+        return tuple(_branches(self.leads, arc.up, arc.down, solved=True))
 
     def visit(self, seed: Array) -> int:
         """The number of the arc through a position at which the parameter can lead.
@@ -335,7 +147,7 @@ class Explorer:
 
     def _fit_at(self, v: Array) -> bool:
         """Whether redundant links fit at all of some positions (K, N)."""
-        return bool((misfit(self.walks.drive.model.equations, v) <= FITS).all())
+        return bool((misfit(self.drive.model.equations, v) <= FITS).all())
 
     def _explore(self, seed: Array, heading: float | Array) -> int:
         """Follow the curve through a seed both ways; the number of the arc."""
@@ -366,7 +178,9 @@ class Explorer:
 
     def _walk(self, start: Array, heading: float | Array) -> tuple[TracedCurve, int | None]:
         """A walk and the number of the crossing it ends at, if it does."""
-        walk = self.walks.walk(start, heading)
+        walk = trace_with_proof(
+            self.leads, start, heading, self.certify, prove_turns=self.prove_turns
+        )
         found = walk.curve.crossing
         if found is None or not walk.curve.legs:
             return walk, None
@@ -376,7 +190,7 @@ class Explorer:
         return walk, self._register(found, -side * led.whole(node.first))
 
     def _register(self, found: Crossing, came_from: Array) -> int:
-        found = replace(found, v=_improved(self.walks.drive, found.v))
+        found = replace(found, v=_improved(self.drive, found.v))
         number = next(
             (k for k, one in enumerate(self.crossings) if coincide(self.leads, one.v, found.v)),
             len(self.crossings),
@@ -407,17 +221,6 @@ def _improved(drive: Drive, v: Array) -> Array:
             if np.linalg.cond(slope / block.system.equation_scale[:, None]) < REGULAR_CONDITION:
                 found[block.unknowns] = done.v[0, :n]
     return found
-
-
-def _with_proofs(arc: Arc, walks: Walks) -> Arc:
-    proved = replace(
-        arc,
-        up=walks.with_proof(arc.up),
-        down=None if arc.down is None else walks.with_proof(arc.down),
-    )
-    # the first branch needs no way to it
-    others = [replace(branch, proved=proved.certified) for branch in arc.branches[1:]]
-    return replace(proved, branches=(*arc.branches[:1], *others))
 
 
 def _beyond(leads: Parametrizations, crossing: Crossing, direction: Array) -> Array | None:
@@ -534,3 +337,12 @@ def _rests(leads: Parametrizations, arc: Arc) -> bool:
     if not values:
         return False
     return bool(np.ptp(np.concatenate(values)) < _STILL * leads.scale[p])
+
+
+def is_regular(leads: Parametrizations, v: Array, most: float = REGULAR_CONDITION) -> bool:
+    """Whether the input can lead at a position (N,): not at dead points and change points.
+
+    ``most``: the condition of the equations there.
+    """
+    own = leads.with_parameter(leads.parameter)
+    return own is not None and own.node(v).nearness < most

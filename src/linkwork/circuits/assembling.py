@@ -91,11 +91,7 @@ def _graded(roots: Roots, proofs: ProvedRoots, bound: SolutionBound) -> BlockRoo
     doubles = roots.multiple[_mirror_gap(roots.multiple, m) < ALMOST_DOUBLE]
     if roots.continuum:
         grade = Completeness.CONTINUUM
-    elif (
-        not roots.sure
-        or roots.failed
-        or roots.paths != len(roots.x) + roots.at_infinity + roots.singular
-    ):
+    elif not (roots.sure and roots.accounted_for):
         grade = Completeness.NOT_PROVED
     elif roots.singular or unproved.any():
         grade = Completeness.MULTIPLE
@@ -108,22 +104,7 @@ def _graded(roots: Roots, proofs: ProvedRoots, bound: SolutionBound) -> BlockRoo
         x=x,
         multiple=np.concatenate([unproved[real], np.ones(len(doubles), dtype=bool)]),
         grade=grade,
-        paths=_count(roots, int(real.sum()) + len(doubles), bound),
-    )
-
-
-def _count(roots: Roots, real: int, bound: SolutionBound) -> PathCount:
-    return PathCount(
-        unknowns=(),
-        paths=roots.paths,
-        finite=len(roots.x),
-        real=real,
-        at_infinity=roots.at_infinity,
-        multiple=roots.singular,
-        failed=roots.failed,
-        expected=roots.expected,
-        bound=bound.number,
-        theorem=bound.theorem.value,
+        paths=roots.counted((), len(x), bound.number, bound.theorem.value),
     )
 
 

@@ -52,16 +52,6 @@ class TracedCurve:
 
 
 def trace_with_proof(
-    leads: Parametrizations, start: Array, heading: float | Array, certify: bool
-) -> TracedCurve:
-    """Trace a curve with bold steps; with careful ones if these are not proved or not to be."""
-    found = trace_boldly(leads, start, heading, certify)
-    if not certify or not found.curve.legs:
-        return found
-    return confirmed(leads, start, heading, found, prove_curve(leads, found.curve))
-
-
-def trace_boldly(
     leads: Parametrizations,
     start: Array,
     heading: float | Array,
@@ -69,28 +59,21 @@ def trace_boldly(
     *,
     prove_turns: bool = True,
 ) -> TracedCurve:
-    """A curve whose proof is still to be made; with careful steps if there will be none.
+    """Trace a curve with bold steps; with careful ones if these are not proved or not to be.
 
     ``prove_turns``: whether to prove where its dead points are.
     """
-    bold = certify and _provable(leads)
+    own = leads.with_parameter(leads.parameter)
+    bold = certify and own is not None and own.provable
     curve = trace(leads, start, heading, CurveOptions() if bold else _CAREFUL)
     turns = turning_points(leads, curve, prove=prove_turns)
-    return TracedCurve(curve=curve, proof=None, turns=tuple(turns))
-
-
-def confirmed(
-    leads: Parametrizations,
-    start: Array,
-    heading: float | Array,
-    found: TracedCurve,
-    proof: ProvenCurve,
-) -> TracedCurve:
-    """A curve with its proof; where bold steps are not proved, traced again with careful ones."""
-    best = careful = replace(found, proof=proof)
+    found = TracedCurve(curve=curve, proof=None, turns=tuple(turns))
+    if not certify or not curve.legs:
+        return found
+    best = careful = replace(found, proof=prove_curve(leads, curve))
     if best.certified:
         return best
-    if _provable(leads):
+    if bold:
         curve = trace(leads, start, heading, _CAREFUL)
         careful = TracedCurve(curve=curve, proof=None, turns=())
         if not curve.legs:
@@ -106,11 +89,6 @@ def confirmed(
     if best.curve is found.curve:
         return best
     return replace(best, turns=tuple(turning_points(leads, best.curve)))
-
-
-def _provable(leads: Parametrizations) -> bool:
-    own = leads.with_parameter(leads.parameter)
-    return own is not None and own.provable
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)

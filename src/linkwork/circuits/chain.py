@@ -68,10 +68,6 @@ class Chain:
         """The joints of a link."""
         return [joint for joint in self.joints if link in joint.links]
 
-    def joined(self, first: str, second: str) -> Joint | None:
-        """The joint between two links, if it exists."""
-        return next((j for j in self.joints if first in j.links and second in j.links), None)
-
     def with_blocks(self) -> Chain:
         """The chain of lower pairs only: a pin in a slot becomes a block, pinned and sliding.
 
@@ -195,18 +191,6 @@ def missing() -> str:
     return ""
 
 
-def _of_graph6(text: str) -> Graph:
-    return _networkx().from_graph6_bytes(text.encode("ascii"))
-
-
-def _link_graph(chain: Chain) -> Graph:
-    """Links as vertices, joints as edges; for chains without multiple joints."""
-    graph = _networkx().Graph()
-    graph.add_nodes_from(chain.links)
-    graph.add_edges_from(joint.links for joint in chain.joints)
-    return graph
-
-
 def _coloured(chain: Chain, ground: str) -> Graph:
     """Links and joints as vertices with their kinds; multiple pins are kept."""
     graph = _networkx().Graph()
@@ -226,20 +210,18 @@ def same_graph(chain: Chain, graph6: str) -> bool:
     ----------
     B. D. McKay, graph6 format, https://users.cecs.anu.edu.au/~bdm/data/formats.txt
     """
-    return bool(_networkx().is_isomorphic(_link_graph(chain), _of_graph6(graph6)))
+    own = _networkx().Graph()  # links as vertices, joints as edges
+    own.add_nodes_from(chain.links)
+    own.add_edges_from(joint.links for joint in chain.joints)
+    known = _networkx().from_graph6_bytes(graph6.encode("ascii"))
+    return bool(_networkx().is_isomorphic(own, known))
 
 
 def same_inversion(chain: Chain, ground: str, other: Chain, other_ground: str) -> bool:
     """Whether two chains have the same graph, kinds of joints and fixed link."""
-
-    def same(one: dict[str, str], another: dict[str, str]) -> bool:
-        return one["kind"] == another["kind"]
-
-    return bool(
-        _networkx().is_isomorphic(
-            _coloured(chain, ground), _coloured(other, other_ground), node_match=same
-        )
-    )
+    graphs = _coloured(chain, ground), _coloured(other, other_ground)
+    same_kind = _networkx().isomorphism.categorical_node_match("kind", None)
+    return bool(_networkx().is_isomorphic(*graphs, node_match=same_kind))
 
 
 def orbits(chain: Chain) -> list[list[str]]:
@@ -270,17 +252,7 @@ def contours(incidences: Iterable[tuple[str, str]]) -> list[int]:
 # Names of kinematic chains, and of their inversions with a given link as ground.
 
 
-_WORDS = {
-    2: "two",
-    3: "three",
-    4: "four",
-    5: "five",
-    6: "six",
-    7: "seven",
-    8: "eight",
-    9: "nine",
-    10: "ten",
-}
+_WORDS = ("", "", "two", "three", "four", "five", "six", "seven", "eight", "nine", "ten")
 #: Joints around a loop of four links, in the lexicographically smallest rotation.
 _FOUR_LINK = {
     "RRRR": "four-bar chain",
@@ -330,7 +302,7 @@ def chain_name(chain: Chain) -> str:
     # names are those of chains of lower pairs: a pin in a slot counts as a block
     whole = chain.with_blocks()
     count = len(whole.links)
-    plain = f"{_WORDS.get(count, count)}-link chain"
+    plain = f"{_WORDS[count] if count < len(_WORDS) else count}-link chain"
     higher = [joint for joint in whole.joints if not joint.kind.lower]
     if higher:
         nouns = dict.fromkeys(joint.kind.noun for joint in higher)
@@ -458,21 +430,8 @@ def _drawn_apart(joint: Joint) -> Iterator[tuple[Joint, ...]]:
     for code in product(range(count), repeat=count - 2):
         yield tuple(
             replace(joint, name=f"{joint.name} {k}", links=(joint.links[a], joint.links[b]))
-            for k, (a, b) in enumerate(_tree(code, count))
+            for k, (a, b) in enumerate(_networkx().from_prufer_sequence(code).edges)
         )
-
-
-def _tree(code: Iterable[int], count: int) -> list[tuple[int, int]]:
-    """The tree of a Prüfer code (H. Prüfer, Archiv der Math. und Physik 27 (1918) 742-744)."""
-    left = list(code)
-    degree = [1 + left.count(vertex) for vertex in range(count)]
-    edges = []
-    for vertex in left:
-        leaf = degree.index(1)
-        edges.append((leaf, vertex))
-        degree[leaf], degree[vertex] = 0, degree[vertex] - 1
-    first, second = (vertex for vertex in range(count) if degree[vertex] == 1)
-    return [*edges, (first, second)]
 
 
 def _counted(number: int, noun: str) -> str:

@@ -8,8 +8,8 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from linkwork.circuits import failure as why
-from linkwork.circuits.arcs import Arc, Explorer, Walks, positions_at_value
+from linkwork import wings
+from linkwork.circuits.arcs import Arc, Explorer, is_regular, positions_at_value
 from linkwork.circuits.assembling import Assemblies, positions_at
 from linkwork.circuits.branches import CurveBranch, weakest_place
 from linkwork.circuits.dead_inputs import (
@@ -57,26 +57,14 @@ class Seeding:
         self.dead: DeadPointInputs | None = None
         self.seeded = self.unclear = 0
         self.start: Start | None = None
-        self._lists: dict[float, Assemblies] = {}
-        self._told = 0.0
 
     def look(self, progress: Callable[[float], None] | None) -> None:
-        """Seed with the guess, the configurations at its input, and those between dead points.
-
-        A second time if a proof has replaced a curve: what follows from it may be different.
-        """
-        self._look(progress)
-        if not self.explorer.settle():
-            self.explorer.restart()
-            self._look(progress)
-
-    def _look(self, progress: Callable[[float], None] | None) -> None:
+        """Seed with the guess, the configurations at its input, and those between dead points."""
         model = self.model
-        self.names, self.seeded, self.unclear = [], 0, 0
-        start = self.start or first_position(model, model.start_inputs, NewtonOptions())
-        self.start = start
+        start = self.start = first_position(model, model.start_inputs, NewtonOptions())
         # at a dead point the input cannot lead; the circuit is found from other inputs
-        if start.status.ok and self._regular(start.v, TrackOptions().largest_condition):
+        most = TrackOptions().largest_condition
+        if start.status.ok and is_regular(self.drive.leads, start.v, most):
             self.explorer.visit(start.v)
         value = float(model.start_inputs[self.drive.lead])
         found = self._positions_at(value)
@@ -84,19 +72,19 @@ class Seeding:
             return
         self.names = list(zip(found.v, found.names, strict=True))
         sure = self._visit_circuits(found)
-        self.dead = self.dead or dead_point_inputs(model, self.drive.path, self.drive.lead)
+        self.dead = dead_point_inputs(model, self.drive.path, self.drive.lead)
         intervals = self._intervals(value, sure)
         for k, interval in enumerate(intervals):
-            self._look_into(interval)
-            self._told = max(self._told, (k + 1) / len(intervals))
+            # another value where the list of one fails
+            self.unclear += not any(
+                self._visit_circuits(self._positions_at(value)) for value in interval
+            )
             if progress is not None:
-                progress(self._told)
+                progress((k + 1) / len(intervals))
 
     def _positions_at(self, value: float) -> Assemblies:
         """All configurations at a value of the leading input."""
-        if value not in self._lists:
-            self._lists[value] = positions_at(self.model, self.drive.path.at(value))
-        return self._lists[value]
+        return positions_at(self.model, self.drive.path.at(value))
 
     def _intervals(self, value: float, sure: bool) -> list[Interval]:
         """Where to look; a ``value`` whose list is ``sure`` represents its interval."""
@@ -112,25 +100,14 @@ class Seeding:
             found += [(further,) for further in self._further_inputs(value)]
         return found
 
-    def _look_into(self, interval: Interval) -> None:
-        """List the configurations at one value of an interval, at another where that fails."""
-        if not any(self._visit_circuits(self._positions_at(value)) for value in interval):
-            self.unclear += 1
-
     def _visit_circuits(self, found: Assemblies) -> bool:
         """Follow the circuits of all configurations; whether none is missing or left out."""
-        regular = [self._regular(v) for v in found.v]
+        regular = [is_regular(self.drive.leads, v) for v in found.v]
         for v, good in zip(found.v, regular, strict=True):
             if good:
                 self.explorer.visit(v)
         self.seeded += 1
         return found.completeness.complete and all(regular)
-
-    def _regular(self, v: Array, most: float | None = None) -> bool:
-        """Whether the input can lead at a position: not at dead points and change points."""
-        own = self.drive.leads.with_parameter(self.drive.leads.parameter)
-        largest = REGULAR_CONDITION if most is None else most
-        return own is not None and own.node(v).nearness < largest
 
     def _further_inputs(self, start: float) -> list[float]:
         """Equally spaced over a turn, or over the input's table."""
@@ -216,7 +193,7 @@ class _Group:
 class _Circuits:
     def __init__(self, drive: Drive, certify: bool) -> None:
         self.drive, self.leads, self.model, self.certify = drive, drive.leads, drive.model, certify
-        self.explorer = Explorer(Walks(drive, certify))
+        self.explorer = Explorer(drive, certify)
         self.seeding = Seeding(drive, self.explorer)
 
     def result(self) -> Circuits:
@@ -243,7 +220,7 @@ class _Circuits:
         start = self.seeding.start
         if start is None or not start.status.ok:
             return None if start is None else start.failure
-        return why.without_circuit(self.model, start.v)
+        return wings.use("circuits.failure.failing").without_circuit(self.model, start.v)
 
     def _groups(self) -> list[_Group]:
         """Arcs joined by the change points they share, in the order found."""

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -85,7 +84,8 @@ def further_branches(
             for turn in walk.turns
         ),
         windows=tuple(branch.range(leads.parameter) for _, branches in ways for branch in branches),
-        end=_how_it_ends(walks),
+        # of its two ends the less certain one
+        end=max((walk.curve.end for walk in walks), key=list(CircuitEnd).index),
     )
 
 
@@ -94,11 +94,6 @@ def _branch_name(model: Model, number: int) -> str:
     if model.branch == f"{model.circuit} branch 1":
         return f"{model.circuit} branch {number}"
     return f"{model.circuit}, branch {number} from there"
-
-
-def _how_it_ends(walks: Sequence[TracedCurve]) -> CircuitEnd:
-    """How the circuit ends: of its two ends the less certain one."""
-    return max((walk.curve.end for walk in walks), key=list(CircuitEnd).index)
 
 
 def _rows(

@@ -2,41 +2,20 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 from linkwork.circuits.chain import Chain, chain_name, contours, inversion_name
 from linkwork.circuits.loop_type import driven_joints, input_loop, loop_type
 from linkwork.circuits.reading_joints import NotRead
-from linkwork.circuits.reading_loops import read_linkage
-from linkwork.core.foundation.errors import MechanismError
+from linkwork.circuits.reading_loops import Seen, read_linkage
 from linkwork.core.foundation.names import GROUND
 from linkwork.core.mechanism.linkage import Linkage
 from linkwork.core.mechanism.loops import Loops
 from linkwork.core.mechanism.part.part import Joint, JointKind
-from linkwork.core.motion.model import Model, model_of
+from linkwork.core.motion.model import Model
 from linkwork.core.numerics.decomposition import block_form
 from linkwork.core.results.check import AssurGroup, Classification
-
-
-@dataclass(frozen=True, kw_only=True)
-class Seen:
-    """The points and links of a mechanism.
-
-    Parameters
-    ----------
-    model : Model
-        Of the linkage: the mechanism's own, unless it is given by loops.
-    turning : Mapping[str, tuple of str]
-        The variables of the mechanism's own equations that give the direction of every link.
-    loose : tuple of str
-        Links some of whose lengths the loops do not determine; the chain does not depend on them.
-    """
-
-    model: Model
-    linkage: Linkage
-    turning: Mapping[str, tuple[str, ...]]
-    loose: tuple[str, ...] = ()
 
 
 @dataclass(frozen=True)
@@ -67,13 +46,9 @@ def as_linkage(model: Model) -> Seen | NotSeen:
     done = model.compiled.solver.solve(equations.start[None, :])
     v = equations.start if done.failed_block[0] >= 0 else done.v[0]
     try:
-        read = read_linkage(description, equations, v)
-        seen = model_of(read.linkage)
+        return read_linkage(description, equations, v)
     except NotRead as error:
         return NotSeen(str(error))
-    except MechanismError as error:
-        return NotSeen(error.problems[0].message)
-    return Seen(model=seen, linkage=read.linkage, turning=read.turning, loose=read.loose)
 
 
 # ----------------------------------------------------------------------

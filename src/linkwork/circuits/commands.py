@@ -11,7 +11,7 @@ from linkwork.circuits.listing import (
     completeness_fields,
     configuration_columns,
 )
-from linkwork.circuits.results import Circuit, Circuits, Configurations
+from linkwork.circuits.results import Circuits, Configurations
 from linkwork.core.api.mechanism import Mechanism
 from linkwork.core.commands.options import (
     at_option,
@@ -134,16 +134,10 @@ def circuits_lines(found: Circuits) -> list[str]:
         *sentence(good if count else bad, what, f"driven by {found.input}"),
     ]
     for circuit in found:
-        lines += ["", *_circuit_lines(found, circuit)]
+        lines += ["", *table_lines(branch_columns(found, circuit))]
+        lines += fields(list(circuit_fields(found, circuit)))
     reason = [] if found.failure is None else list(found.failure.sentences())
     return [*lines, "", *fields([*reason, ("complete", found.message)])]
-
-
-def _circuit_lines(found: Circuits, circuit: Circuit) -> list[str]:
-    return [
-        *table_lines(branch_columns(found, circuit)),
-        *fields(list(circuit_fields(found, circuit))),
-    ]
 
 
 # ----------------------------------------------------------------------

@@ -16,7 +16,8 @@ import numpy as np
 from linkwork.circuits.dead_point_form import DeadPointForm, dead_point_form
 from linkwork.circuits.homotopy.dead_point_family import dead_point_roots
 from linkwork.circuits.homotopy.idle_component import keeps_complex_input, real_motion
-from linkwork.circuits.homotopy.polynomial_system import Roots, nearest_solution
+from linkwork.circuits.homotopy.polynomial_system import nearest_solution
+from linkwork.circuits.results import PathCount
 from linkwork.core.equations.compiling import NoDirectionForm, ParametrizedTable
 from linkwork.core.foundation.arrays import Array, BoolArray, ComplexArray
 from linkwork.core.foundation.rounding import ALMOST_DOUBLE, ALMOST_REAL
@@ -100,19 +101,6 @@ _GRADES = {
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
-class DeadPointCount:
-    """The outcome of the paths of one block, and how many solutions are real."""
-
-    unknowns: tuple[str, ...]
-    paths: int
-    finite: int
-    real: int
-    multiple: int
-    expected: int
-    bound: int
-
-
-@dataclass(frozen=True, kw_only=True, eq=False)
 class DeadPointInputs:
     """Where the input can lock, internal units.
 
@@ -129,7 +117,7 @@ class DeadPointInputs:
         Inputs at which a length runs to infinity; there, too, configurations begin and end.
     poles_known : bool
         Whether these are all.
-    counts : tuple of DeadPointCount
+    counts : tuple of PathCount
         One for each block that can lock.
     """
 
@@ -139,7 +127,7 @@ class DeadPointInputs:
     message: str
     poles: Array
     poles_known: bool
-    counts: tuple[DeadPointCount, ...]
+    counts: tuple[PathCount, ...]
 
     @property
     def cuts(self) -> Array:
@@ -184,7 +172,7 @@ class _Search:
         self.reasons: list[str] = []
         self.values: list[float] = []
         self.doubles: list[float] = []
-        self.counts: list[DeadPointCount] = []
+        self.counts: list[PathCount] = []
         self.poles: list[float] = []
         self.poles_known = True
 
@@ -224,21 +212,20 @@ class _Search:
                 f"paths, more than the {_MOST_PATHS} that are followed"
             )
         roots = dead_point_roots(system)
-        lost = roots.failed or not roots.sure
-        lost = lost or roots.paths != len(roots.x) + roots.at_infinity + roots.singular
-        if lost:
+        if not (roots.sure and roots.accounted_for):
             self.grade = self.grade.and_then(Completeness.NOT_PROVED)
         if roots.continuum:
             self._grade_curves(form, roots.curves)
         real = _real(form, roots.x, ALMOST_REAL)
         # multiple solutions are known to the square root of rounding: a wider tolerance
-        double = _real(form, _sharpen_roots(form, roots.multiple), ALMOST_DOUBLE)
+        sharp = [nearest_solution(system, x, _STEPS) for x in roots.multiple]
+        double = _real(form, np.array(sharp).reshape(roots.multiple.shape), ALMOST_DOUBLE)
         start = self.model.equations.start
         self.values += self._wrap_angle(form.positions(real, start)[:, -1].tolist())
         self.doubles += self._wrap_angle(
             [self._crossing(form, number, x) for x in form.positions(double, start)]
         )
-        self.counts.append(_count(names, form, roots, len(real) + len(double)))
+        self.counts.append(roots.counted(names, len(real) + len(double), system.bound))
 
     def _grade_curves(self, form: DeadPointForm, curves: ComplexArray) -> None:
         """Grade the list where curves of dead points, through solutions (C, n), may be real."""
@@ -310,20 +297,3 @@ def _real(form: DeadPointForm, x: ComplexArray, within: float) -> ComplexArray:
     gap = np.abs(x[:, :m] - x[:, m : 2 * m].conj()).max(axis=1, initial=0.0)
     real: ComplexArray = x[gap < within * (1.0 + np.abs(x[:, : 2 * m]).max(axis=1, initial=0.0))]
     return real
-
-
-def _sharpen_roots(form: DeadPointForm, x: ComplexArray) -> ComplexArray:
-    """Multiple solutions (R, n), as well as rounding lets them be found."""
-    return np.array([nearest_solution(form.system, each, _STEPS) for each in x]).reshape(x.shape)
-
-
-def _count(names: tuple[str, ...], form: DeadPointForm, roots: Roots, real: int) -> DeadPointCount:
-    return DeadPointCount(
-        unknowns=names,
-        paths=roots.paths,
-        finite=len(roots.x),
-        real=real,
-        multiple=roots.singular,
-        expected=roots.expected,
-        bound=form.system.bound,
-    )

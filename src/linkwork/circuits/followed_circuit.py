@@ -7,15 +7,14 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from linkwork.circuits.arcs import Arc, Explorer, Walks, positions_at_value
+from linkwork.circuits.arcs import Arc, Explorer, is_regular, positions_at_value
 from linkwork.circuits.branches import CurveBranch
 from linkwork.core.foundation.arrays import Array
-from linkwork.core.foundation.rounding import REGULAR_CONDITION
 from linkwork.core.foundation.statuses import CONVERGED, CircuitEnd, Status
 from linkwork.core.motion.following import Drive, track_to
 from linkwork.core.motion.model import FITS, misfit
 from linkwork.core.numerics.branch_tracking import node_at, rows_on_track
-from linkwork.core.numerics.local_parametrization import Parametrizations, same_position
+from linkwork.core.numerics.local_parametrization import same_position
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -59,7 +58,7 @@ def straight_way(drive: Drive, start: Array, values: Sequence[float]) -> Straigh
 
 def explorer_of(drive: Drive) -> Explorer:
     """The arcs that all circuits of a question have in common, none followed yet."""
-    return Explorer(Walks(drive, certify=False, prove_turns=False))
+    return Explorer(drive, certify=False, prove_turns=False)
 
 
 class FollowedCircuit:
@@ -164,9 +163,3 @@ class FollowedCircuit:
         # another sign
         side = own.node(branch.anchor).orientation
         return [v for v in found if np.array_equal(own.node(v).orientation, side)]
-
-
-def is_regular(leads: Parametrizations, v: Array) -> bool:
-    """Whether the input can lead at a position (N,): not at dead points and change points."""
-    own = leads.with_parameter(leads.parameter)
-    return own is not None and own.node(v).nearness < REGULAR_CONDITION

@@ -24,31 +24,8 @@ from linkwork.core.mechanism.skeleton import named_in
 # Inputs and outputs of an inversion: the same quantities relative to another ground.
 
 
-@dataclass(frozen=True, kw_only=True)
-class Frame:
-    """The old ground as a link of the inversion.
-
-    Parameters
-    ----------
-    ground : str
-        The new ground.
-    name : str
-        The link name of the old ground in the inversion.
-    origin : str
-        Its first point, the origin of its direction.
-    place, turn : complex, float
-        Coordinates of that point [length] and that direction [rad] in the old ground.
-    """
-
-    ground: str
-    name: str
-    origin: str
-    place: complex
-    turn: float
-
-
 def inverted_input(
-    linkage: Linkage, which: Input, frame: Frame, places: Mapping[str, complex]
+    linkage: Linkage, which: Input, inversion: Inversion, places: Mapping[str, complex]
 ) -> Input:
     """The input that drives the same relative angle or length.
 
@@ -71,17 +48,17 @@ def inverted_input(
         against, link = linkage.bodies_at(name)
         if link == GROUND:
             link, against = against, link
-    if frame.ground in (link, against) and len(linkage.links[frame.ground]) < 2:
+    if inversion.link in (link, against) and len(linkage.links[inversion.link]) < 2:
         raise InputError(
-            f'the input turns relative to "{frame.ground}", which has one point and no direction: '
-            "give input= for the inversion"
+            f'the input turns relative to "{inversion.link}", which has one point and no '
+            "direction: give input= for the inversion"
         )
-    turn = linkage.angle.from_radians(frame.turn) if against == GROUND else 0.0
+    turn = linkage.angle.from_radians(inversion.turn) if against == GROUND else 0.0
     ways = [_direction(linkage, body, places) for body in (link, against)]
     seen = linkage.angle.from_radians(phase(ways[0] * ways[1].conjugate()))
-    other = frame.name if against == GROUND else against
+    other = inversion.frame if against == GROUND else against
     speed = linkage.speed(which)
-    if link == frame.ground:
+    if link == inversion.link:
         # relative to the driven link, the old ground turns in the opposite direction
         back = None if speed is None else -speed
         against_it = replace(which, link=other, joint=None, relative_to=None, speed=back)
@@ -90,7 +67,7 @@ def inverted_input(
         which,
         link=link,
         joint=None,
-        relative_to=None if against == frame.ground else other,
+        relative_to=None if against == inversion.link else other,
     )
     return _ranged(linkage, same, 1.0, -turn, seen)
 
@@ -123,19 +100,19 @@ def _shifted(number: Number, sign: float, shift: float) -> Number:
     return sign * number + shift
 
 
-def inverted_output(linkage: Linkage, formula: str, frame: Frame) -> str:
+def inverted_output(linkage: Linkage, formula: str, inversion: Inversion) -> str:
     """A formula of the same value: angles and coordinates relative to the old ground."""
-    turn = linkage.angle.from_radians(frame.turn)
+    turn = linkage.angle.from_radians(inversion.turn)
     angles = {canonical(name): name for name in linkage.links if name != GROUND}
     angles |= {canonical(c.angle_name): c.angle_name for c in linkage.of(Cylinder)}
     text = formula
     # from the end of the text, so that the columns of earlier names stay valid
     for node in reversed(list(names_in(parse(formula)))):
         if node.name in angles:
-            seen = "0" if angles[node.name] == frame.ground else angles[node.name]
-            new = f"({seen} - {frame.name} + ({turn!r}))"
+            seen = "0" if angles[node.name] == inversion.link else angles[node.name]
+            new = f"({seen} - {inversion.frame} + ({turn!r}))"
         elif node.name[-2:] in (".x", ".y"):
-            new = _coordinate(node.spelling[:-2], node.name[-1], turn, frame)
+            new = _coordinate(linkage, node.spelling[:-2], node.name[-1], inversion)
         else:
             continue
         at = node.column - 1
@@ -143,13 +120,15 @@ def inverted_output(linkage: Linkage, formula: str, frame: Frame) -> str:
     return text
 
 
-def _coordinate(point: str, axis: str, turn: float, frame: Frame) -> str:
-    """A coordinate in the old ground, rotated from the frame's direction."""
-    x, y = f"({point}.x - {frame.origin}.x)", f"({point}.y - {frame.origin}.y)"
-    angle = f"({frame.name} - ({turn!r}))"
+def _coordinate(linkage: Linkage, point: str, axis: str, inversion: Inversion) -> str:
+    """A coordinate in the old ground, rotated from the direction of the link that it becomes."""
+    origin = linkage.links[GROUND][0]
+    place = linkage.shapes.local[GROUND][origin]
+    x, y = f"({point}.x - {origin}.x)", f"({point}.y - {origin}.y)"
+    angle = f"({inversion.frame} - ({linkage.angle.from_radians(inversion.turn)!r}))"
     if axis == "x":
-        return f"({frame.place.real!r} + cos{angle}*{x} + sin{angle}*{y})"
-    return f"({frame.place.imag!r} + cos{angle}*{y} - sin{angle}*{x})"
+        return f"({place.real!r} + cos{angle}*{x} + sin{angle}*{y})"
+    return f"({place.imag!r} + cos{angle}*{y} - sin{angle}*{x})"
 
 
 # ----------------------------------------------------------------------
@@ -157,20 +136,10 @@ def _coordinate(point: str, axis: str, turn: float, frame: Frame) -> str:
 
 
 #: Fields that inversion supports; others might refer to the old ground.
-_CARRIED = frozenset(
-    {
-        "points",
-        "links",
-        "lengths",
-        "angles",
-        "clearances",
-        "inputs",
-        "outputs",
-        "trace",
-        "dimensions",
-        *PARTS,
-    }
-)
+_CARRIED = {
+    "points", "links", "lengths", "angles", "clearances", "inputs", "outputs", "trace",
+    "dimensions", *PARTS,
+}  # fmt: skip
 
 Places = Mapping[str, complex]
 Coordinates = tuple[Number, ...]
@@ -216,8 +185,7 @@ def inverted(linkage: Linkage, link: str, places: Places, which: Input | None = 
         If the inversion cannot be written with points and links.
     """
     if as_name(link) not in linkage.links:
-        cylinder = any(link == c.name for c in linkage.of(Cylinder))
-        if cylinder:
+        if any(link == c.name for c in linkage.of(Cylinder)):
             raise InputError(
                 f'"{link}" is a cylinder, whose length varies: it cannot be ground. Write it as '
                 "two links with a slider"
@@ -256,20 +224,23 @@ class _Inverting:
     places: Places
 
     def __post_init__(self) -> None:
-        linkage = self.linkage
-        self.taken = set(map(canonical, named_in(linkage)))
-        self.frame = free_name("frame", self.taken)
-        own = linkage.shapes.local[self.link]
-        self.first = linkage.links[self.link][0]
-        axis = self._axis()
+        linkage, places = self.linkage, self.places
+        taken = set(map(canonical, named_in(linkage)))
+        first, axis = places[linkage.links[self.link][0]], self._axis()
         # a rotation by the unit vector of the axis: lengths keep their digits
-        self.seen = {
-            name: (z - self.places[self.first]) / axis for name, z in self.places.items()
-        } | dict(own)
-        self.fixed = list(linkage.links[self.link])
+        seen = {name: (z - first) / axis for name, z in places.items()}
         fixed, (origin, second) = linkage.shapes.local[GROUND], linkage.links[GROUND][:2]
-        # angles on the frame are measured from its first two points, on ground from the x axis
-        self.turn = phase(fixed[second] - fixed[origin])
+        self.inversion = Inversion(
+            linkage=linkage,
+            link=self.link,
+            frame=free_name("frame", taken),
+            ground=GROUND,
+            # angles on the frame are measured from its first two points, on ground from the x axis
+            turn=phase(fixed[second] - fixed[origin]),
+            seen=seen | dict(linkage.shapes.local[self.link]),
+            fixed=list(linkage.links[self.link]),
+            taken=taken,
+        )
 
     def _axis(self) -> complex:
         """The direction of the new ground's x axis in the old one's coordinates."""
@@ -283,23 +254,18 @@ class _Inverting:
 
     def done(self, which: Input | None) -> Linkage:
         """The inverted linkage."""
-        linkage = self.linkage
-        frame = self._seen_frame()
-        inversion = Inversion(
-            linkage=linkage, link=self.link, frame=self.frame, ground=GROUND, turn=self.turn,
-            seen=self.seen, fixed=self.fixed, taken=self.taken,
-        )  # fmt: skip
+        linkage, inversion = self.linkage, self.inversion
         parts: dict[str, tuple[Part, ...]] = {
             table: tuple(part.inverted(inversion) for part in getattr(linkage, table))
             for table in PARTS
         }
-        links = {GROUND: tuple(self.fixed)} | {
+        links = {GROUND: tuple(inversion.fixed)} | {
             inversion.name(name): points
             for name, points in linkage.links.items()
             if name != self.link
         }
         inputs = tuple(
-            inverted_input(linkage, given, frame, self.places) for given in linkage.inputs
+            inverted_input(linkage, given, inversion, self.places) for given in linkage.inputs
         )
         changes: dict[str, Any] = {
             "name": f"{linkage.name}, {self.link} fixed",
@@ -310,29 +276,21 @@ class _Inverting:
             **parts,
             "inputs": inputs if which is None else (which,),
             "outputs": {
-                name: inverted_output(linkage, formula, frame)
+                name: inverted_output(linkage, formula, inversion)
                 for name, formula in linkage.outputs.items()
             },
             # points of the new ground are fixed and have no path
-            "trace": tuple(point for point in linkage.trace if point not in self.fixed),
+            "trace": tuple(point for point in linkage.trace if point not in inversion.fixed),
             # the sketch is an assembled position: it selects the configuration
             "configuration": "",
         }
         return replace(linkage, **changes)
 
-    def _seen_frame(self) -> Frame:
-        origin = self.linkage.links[GROUND][0]
-        return Frame(
-            ground=self.link,
-            name=self.frame,
-            origin=origin,
-            place=self.linkage.shapes.local[GROUND][origin],
-            turn=self.turn,
-        )
-
     def _points(self) -> dict[str, Coordinates]:
         """The new ground exactly, with its length as in the file; other points as a sketch."""
-        found: dict[str, Coordinates] = {name: (z.real, z.imag) for name, z in self.seen.items()}
+        found: dict[str, Coordinates] = {
+            name: (z.real, z.imag) for name, z in self.inversion.seen.items()
+        }
         own = self.linkage.links[self.link]
         if len(own) == 2:
             given = self.linkage.lengths

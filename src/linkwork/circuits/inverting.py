@@ -5,8 +5,9 @@ from __future__ import annotations
 from dataclasses import replace
 
 from linkwork.circuits.chain import Chain, orbits
-from linkwork.circuits.classification import NotSeen, Seen, as_linkage, classify
+from linkwork.circuits.classification import NotSeen, as_linkage, classify
 from linkwork.circuits.inverted_linkage import inverted, settled
+from linkwork.circuits.reading_loops import Seen
 from linkwork.core.foundation.errors import InputError
 from linkwork.core.foundation.names import GROUND, as_name
 from linkwork.core.mechanism.description import Description

@@ -23,24 +23,14 @@ def branch_columns(found: Circuits, circuit: Circuit, digits: int = 10) -> list[
     """The range of every branch of a circuit."""
     unit = f" [{found.input_unit}]" if found.input_unit else ""
     branches = circuit.branches
+    names = [branch.name.removeprefix(f"{circuit.name} ") for branch in branches]
+    low, high = ([short(b.input_range[k], digits) for b in branches] for k in range(2))
+    configurations = [branch.configuration or "-" for branch in branches]
     return [
-        Column(
-            header=circuit.name, cells=[b.name.removeprefix(f"{circuit.name} ") for b in branches]
-        ),
-        Column(
-            header=f"from {found.input}{unit}",
-            cells=[short(branch.input_range[0], digits) for branch in branches],
-            align="point",
-        ),
-        Column(
-            header="to",
-            cells=[short(branch.input_range[1], digits) for branch in branches],
-            align="point",
-        ),
-        Column(
-            header="at the guess's input",
-            cells=[branch.configuration or "-" for branch in branches],
-        ),
+        Column(header=circuit.name, cells=names),
+        Column(header=f"from {found.input}{unit}", cells=low, align="point"),
+        Column(header="to", cells=high, align="point"),
+        Column(header="at the guess's input", cells=configurations),
     ]
 
 

@@ -30,6 +30,7 @@ from linkwork.core.mechanism.inputs import Input
 from linkwork.core.mechanism.linkage import Linkage
 from linkwork.core.mechanism.loops import Loops
 from linkwork.core.mechanism.part.guides import Slider
+from linkwork.core.motion.model import Model, model_of
 
 _NEAR = 1e-6  # relative: closing errors are much smaller, distances of pins much larger
 
@@ -272,24 +273,27 @@ _MOST_WAYS = 64  # combinations of walks that are tried
 
 
 @dataclass(frozen=True, kw_only=True)
-class ReadLinkage:
-    """A linkage derived from loops.
+class Seen:
+    """The points and links of a mechanism.
 
     Parameters
     ----------
+    model : Model
+        Of the linkage: the mechanism's own, unless it is given by loops.
     turning : Mapping[str, tuple of str]
-        The variables of every link's direction, by the file's names.
+        The variables of the mechanism's own equations that give the direction of every link.
     loose : tuple of str
-        Links on which the equations do not determine the distance between the pins of different
-        loops. The chain does not depend on it; an arbitrary distance is used.
+        Links on which loops do not determine the distance between the pins of different loops. The
+        chain does not depend on it; an arbitrary distance is used.
     """
 
+    model: Model
     linkage: Linkage
-    loose: tuple[str, ...] = ()
     turning: Mapping[str, tuple[str, ...]]
+    loose: tuple[str, ...] = ()
 
 
-def read_linkage(loops: Loops, equations: LoopEquations, v: Array) -> ReadLinkage:
+def read_linkage(loops: Loops, equations: LoopEquations, v: Array) -> Seen:
     """Derive the points and links of a mechanism given by its loops.
 
     Parameters
@@ -309,6 +313,7 @@ def read_linkage(loops: Loops, equations: LoopEquations, v: Array) -> ReadLinkag
     drawing = _Drawing(loops, equations, joints, poses, names)
     try:
         linkage = drawing.linkage()
+        model = model_of(linkage)
     except MechanismError as error:  # the derived linkage contradicts itself
         raise NotRead(str(error.problems[0].message)) from None
     shown = {variable.symbol: variable.name for variable in equations.variables}
@@ -317,7 +322,7 @@ def read_linkage(loops: Loops, equations: LoopEquations, v: Array) -> ReadLinkag
         for link, phase in joints.phases.items()
     }
     loose = tuple(name for link, name in names.links.items() if link in joints.loose)
-    return ReadLinkage(linkage=linkage, turning=turning, loose=loose)
+    return Seen(model=model, linkage=linkage, turning=turning, loose=loose)
 
 
 def _check_directions(equations: LoopEquations) -> None:
@@ -378,7 +383,9 @@ class _Drawing:
         rails = [self._rail(*slide) for slide in self._outwards()]
         if not self.places[self.joints.ground]:  # only a slide's line is fixed
             raise NotRead("no vector begins at a fixed link")
-        self._move_ground()
+        own = self.places[self.joints.ground]
+        for name in own:  # in the file's coordinates
+            own[name] += self.names.begin - self.joints.origin
         names, shapes = self.names.links, self.places
         return Linkage(
             name=self.loops.name,
@@ -398,12 +405,6 @@ class _Drawing:
         found = [(name, corner.places[link]) for name, corner in pins if link in corner.places]
         drawn = self.loops.links.get(self.names.links[link], ())
         return sorted(found, key=lambda pin: drawn.index(pin[0]) if pin[0] in drawn else len(drawn))
-
-    def _move_ground(self) -> None:
-        """Move the ground to the file's coordinates."""
-        own = self.places[self.joints.ground]
-        for name in own:
-            own[name] += self.names.begin - self.joints.origin
 
     def _outwards(self) -> Iterator[tuple[Slide, int, int]]:
         """Every slide with its guide and its sliding link.

@@ -281,13 +281,7 @@ def _circuit_data(circuit: Circuit) -> dict[str, Any]:
         "turns": circuit.turns,
         "turning": dict(circuit.turning),
         "branches": [
-            {
-                "name": branch.name,
-                "input_range": list(branch.input_range),
-                "configuration": branch.configuration,
-                "certified": branch.certified,
-                "end": branch.end.name,
-            }
+            {**vars(branch), "input_range": list(branch.input_range), "end": branch.end.name}
             for branch in circuit.branches
         ],
         "dead_points": [limit.to_dict() for limit in circuit.dead_points],

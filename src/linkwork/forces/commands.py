@@ -135,19 +135,13 @@ def reactions_data(found: Reactions, table: Table, stalls: Sequence[Stall] = ())
         "status": found.status.name,
         "units": dict(table.units),
         "columns": {name: column.tolist() for name, column in table.columns.items()},
-        "undetermined": [name for name, rows in found.undetermined.items() if rows.any()],
-        "lifted": [name for name, rows in found.lifted.items() if rows.any()],
-        "slipping": [name for name, rows in found.slipping.items() if rows.any()],
-        "undefined": [name for name, rows in found.undefined.items() if rows.any()],
+        **{
+            word: [name for name, rows in getattr(found, word).items() if rows.any()]
+            for word in ("undetermined", "lifted", "slipping", "undefined")
+        },
         "proved": found.proved.tolist(),
         "stalls": [
-            {
-                "input": stall.input,
-                "value": stall.value,
-                "unit": stall.unit,
-                "bracket": list(stall.bracket),
-                "proved": stall.proved,
-            }
+            {word: getattr(stall, word) for word in ("input", "value", "unit", "bracket", "proved")}
             for stall in stalls
         ],
     }
@@ -163,14 +157,9 @@ def _stems(found: Reactions) -> Iterator[str]:
 
 def _numbers(title: str, found: Reactions, names: Sequence[str]) -> list[str]:
     cells = [significant(float(found.values[name])) for name in names]
-    return table_lines(
-        [
-            Column(header=title, cells=list(names)),
-            Column(
-                header="value", cells=cells, align="point", units=[found.units[n] for n in names]
-            ),
-        ]
-    )
+    units = [found.units[name] for name in names]
+    values = Column(header="value", cells=cells, align="point", units=units)
+    return table_lines([Column(header=title, cells=list(names)), values])
 
 
 def _vectors(found: Reactions, stems: Sequence[str]) -> list[str]:
@@ -183,22 +172,13 @@ def _vectors(found: Reactions, stems: Sequence[str]) -> list[str]:
         f"size [{unit}]": [math.hypot(place.real, place.imag) for place in places],
     }
     angles = [math.degrees(phase(p)) if abs(p) > 0.0 else math.nan for p in places]
-    return table_lines(
-        [
-            Column(header="force", cells=list(stems)),
-            *(
-                Column(header=header, cells=[significant(v) for v in values], align="point")
-                for header, values in parts.items()
-            ),
-            Column(header="angle", cells=[fixed(a, 2) for a in angles], align="point"),
-            Column(header="on", cells=[_carrier(found.about[f"{stem}.x"]) for stem in stems]),
-        ]
-    )
-
-
-def _carrier(about: str) -> str:
-    """The body that a force acts on, from its explanation."""
-    return about.rpartition(" on ")[2]
+    columns = [Column(header="force", cells=list(stems))]
+    for header, values in parts.items():
+        columns.append(Column(header=header, cells=list(map(significant, values)), align="point"))
+    columns.append(Column(header="angle", cells=[fixed(a, 2) for a in angles], align="point"))
+    # explanations of forces end with the body that they act on
+    carriers = [found.about[f"{stem}.x"].rpartition(" on ")[2] for stem in stems]
+    return table_lines([*columns, Column(header="on", cells=carriers)])
 
 
 # ----------------------------------------------------------------------
@@ -347,40 +327,22 @@ def equilibria_lines(mechanism: Mechanism, found: Sequence[Equilibrium]) -> list
     units = mechanism.model.input_units
     if len(units) > 1:
         head += ", found from a grid of starts: there may be more"
-    return [
-        *lines,
-        *sentence(good, head),
-        "",
-        *table_lines(
-            [
-                *(
-                    Column(
-                        header=f"{name} [{unit}]" if unit else name,
-                        cells=[fixed(each.values[name], 6) for each in found],
-                        align="point",
-                    )
-                    for name, unit in units.items()
-                ),
-                Column(header="", cells=[_stability(each) for each in found]),
-                *(
-                    Column(
-                        header=f"mode {k + 1} [Hz]" if len(units) > 1 else "frequency [Hz]",
-                        cells=[_frequency(each.frequencies[k]) for each in found],
-                        align="point",
-                    )
-                    for k in range(len(units))
-                ),
-            ]
-        ),
-    ]
+    columns = []
+    for name, unit in units.items():
+        cells = [fixed(each.values[name], 6) for each in found]
+        header = f"{name} [{unit}]" if unit else name
+        columns.append(Column(header=header, cells=cells, align="point"))
+    columns.append(Column(header="", cells=[_stability(each) for each in found]))
+    for k in range(len(units)):
+        rates = [each.frequencies[k] for each in found]
+        cells = [significant(rate) if rate > 0.0 else "-" for rate in rates]
+        header = f"mode {k + 1} [Hz]" if len(units) > 1 else "frequency [Hz]"
+        columns.append(Column(header=header, cells=cells, align="point"))
+    return [*lines, *sentence(good, head), "", *table_lines(columns)]
 
 
 def _stability(each: Equilibrium) -> str:
     return "indifferent" if each.indifferent else "stable" if each.stable else "unstable"
-
-
-def _frequency(value: float) -> str:
-    return significant(value) if value > 0.0 else "-"
 
 
 def motion_data(motion: Motion, table: Table) -> dict[str, Any]:

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
+from linkwork import wings
 from linkwork.core.api.mechanism import Mechanism
 from linkwork.core.results.motion import Motion
-from linkwork.forces import dynamics, reactions
 from linkwork.forces.results import Equilibrium
 from linkwork.forces.stall import Stall
 
@@ -40,7 +40,9 @@ def stalls(
     ()
     """
     rows = mechanism.sweep(configuration=configuration) if motion is None else motion
-    return reactions.locate_stalls(mechanism.model, rows, configuration=configuration)
+    return wings.use("forces.reactions.solving").locate_stalls(
+        mechanism.model, rows, configuration=configuration
+    )
 
 
 def equilibria(
@@ -72,4 +74,6 @@ def equilibria(
     >>> [each.stable for each in lw.forces.equilibria(lw.example("crank-press"))]
     [False, True]
     """
-    return dynamics.equilibria(mechanism.model, at, change_points=change_points)
+    return wings.use("forces.dynamics.equilibria").equilibria(
+        mechanism.model, at, change_points=change_points
+    )

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 import linkwork as lw
-from linkwork.circuits.branches import TracedCurve, trace_boldly
+from linkwork.circuits.branches import TracedCurve, trace_with_proof
 from linkwork.circuits.followed_circuit import FollowedCircuit, explorer_of, straight_way
 from linkwork.circuits.results import Circuits
 from linkwork.core.motion.following import Drive
@@ -234,10 +234,10 @@ def _traced(monkeypatch: pytest.MonkeyPatch) -> list[TracedCurve]:
     traced: list[TracedCurve] = []
 
     def counted(*given: Any, **options: Any) -> TracedCurve:
-        traced.append(trace_boldly(*given, **options))
+        traced.append(trace_with_proof(*given, **options))
         return traced[-1]
 
-    monkeypatch.setattr("linkwork.circuits.arcs.trace_boldly", counted)
+    monkeypatch.setattr("linkwork.circuits.arcs.trace_with_proof", counted)
     return traced
 
 

@@ -10,7 +10,6 @@ import numpy as np
 
 from linkwork.circuits.failure.reach import (
     MOST_UNKNOWNS,
-    ElsewhereAt,
     ReachableRange,
     assembled_near,
     block_positions,
@@ -19,7 +18,7 @@ from linkwork.circuits.failure.reach import (
     reach_towards,
     roots_in_block,
 )
-from linkwork.circuits.failure.remedies import dyad_of, remedies_of
+from linkwork.circuits.failure.remedies import remedies_of
 from linkwork.core.foundation.arrays import Array
 from linkwork.core.foundation.statuses import NewtonTrouble, Status
 from linkwork.core.foundation.units import within_half_a_turn
@@ -209,10 +208,6 @@ def root_beside_guess(block: Block, guess: Array, found: Array) -> Array | None:
 # Explain a failed position: open loops, remedies, nearest reachable input.
 
 
-#: How the positions that exist at given inputs are found, for every explanation.
-ELSEWHERE: ElsewhereAt = positions_elsewhere
-
-
 def no_position(
     model: Model, v: Array, status: Status, failed_block: int, options: NewtonOptions
 ) -> tuple[Status, Failure]:
@@ -245,7 +240,9 @@ def _explain(
     # the damped iteration is held everywhere where there is no position
     if trouble is NewtonTrouble.LOCAL_EXTREMUM and not exists:
         trouble = None
-    what = status.value if trouble is None else f"{_head(status)}: {trouble.value}"
+    what = status.value
+    if trouble is not None:
+        what = f"{what.partition(':')[0]}: {trouble.value}"
     meant: dict[str, float] = {}
     if miss.closed:
         meant = _name_unknowns(model, block, miss.v[: len(block.unknowns)])
@@ -306,23 +303,12 @@ def without_start(model: Model, failure: Failure, inputs: Array) -> Failure:
 
     Positions are searched at the inputs asked for; the nearest input is named if there are none.
     """
-    here = _failure(model, inputs, what="")
-    nearest = failure if not here.configurations else here
-    return replace(
-        failure,
-        what="the motion starts at the input value of the guess, where there is no position: "
-        f"{failure.what}",
-        asked=here.asked,
-        nearest_input=nearest.nearest_input,
-        nearest_kind=nearest.nearest_kind,
-        nearest_proved=nearest.nearest_proved,
-        through=nearest.through,
-        unreachable=nearest.unreachable,
-        configurations=here.configurations,
-        configuration_names=here.configuration_names,
-        complete=here.complete,
-        complete_likely=here.complete_likely,
-    )
+    what = "the motion starts at the input value of the guess, where there is no position"
+    kept = ["loops", "gap", "remedies", "trouble", "meant"]
+    here = _failure(model, inputs, what=f"{what}: {failure.what}")
+    if not here.configurations:
+        kept += ["nearest_input", "nearest_kind", "nearest_proved", "through", "unreachable"]
+    return replace(here, **{name: getattr(failure, name) for name in kept})
 
 
 def without_circuit(model: Model, found: Array) -> Failure:
@@ -419,10 +405,6 @@ def _nearest_limit(
     return ReachableRange(inputs=inputs, kind=kind, proved=False, first_dead_point=None)
 
 
-def _head(status: Status) -> str:
-    return status.value.partition(":")[0]
-
-
 def _labels(model: Model, block: Block) -> tuple[str, ...]:
     return tuple(model.equations.labels[e] for e in block.equations)
 
@@ -453,8 +435,7 @@ def _cannot_close(model: Model, block: Block, number: int, here: Array, miss: Mi
     inputs = here[solver.unknowns :]
     count = _loops_in(model, block)
     gaps = np.hypot(miss.f[:count], miss.f[count : 2 * count])
-    dyad = dyad_of(block, here)
-    total = dyad.gap if dyad is not None else float(np.linalg.norm(gaps))
+    total = float(np.linalg.norm(gaps))
     worst, unit = int(np.argmax(gaps)), model.units.length
     labels = _labels(model, block)[:count]
     names = f'loop "{labels[worst]}"'
@@ -515,8 +496,7 @@ def _failure(
     model: Model, inputs: Array, reach: ReachableRange | None = None, **parts: object
 ) -> Failure:
     """The explanation with the positions that exist at the inputs (p,)."""
-    driven = [u.name for u in model.equations.inputs]
-    found = ELSEWHERE(model, inputs)
+    found = positions_elsewhere(model, inputs)
     everywhere = model.equations.start[None, :][:0] if found is None else found.v
     n = model.compiled.solver.unknowns
     scales = np.array([model.units.scale(Kind(u.kind)) for u in model.equations.unknowns])
@@ -529,7 +509,8 @@ def _failure(
     names = [u.name for u in model.equations.unknowns]
 
     def by_name(values: Array) -> dict[str, float]:
-        return {name: float(value) for name, value in zip(driven, values, strict=True)}
+        driven = (variable.name for variable in model.equations.inputs)
+        return dict(zip(driven, map(float, values), strict=True))
 
     towards: dict[str, object] = {}
     if reach is not None:

@@ -9,9 +9,9 @@ from typing import TypeVar
 
 import numpy as np
 
-from linkwork.circuits.assembling import positions_at
+from linkwork.circuits.assembling import positions_at, solve_block
 from linkwork.circuits.branches import TracedCurve
-from linkwork.circuits.failure.remedies import dyad_of
+from linkwork.circuits.failure.remedies import dyad_form
 from linkwork.core.equations.compiling import ParametrizedTable
 from linkwork.core.foundation.arrays import Array, BoolArray
 from linkwork.core.foundation.statuses import CircuitEnd, Completeness, Status
@@ -184,13 +184,11 @@ def _proved(follow: Callable[[TrackOptions], _T], cares: Sequence[TrackOptions])
     """What is followed with the least care that proves it, or else with the most that is cheap."""
     for care in cares:
         found = follow(care)
-        if found is None or found.certified or _size(found) > _MOST_AGAIN:
+        if found is None or found.certified:
+            break
+        if sum(leg.v.size for leg in found.curve.legs) > _MOST_AGAIN:
             break
     return found
-
-
-def _size(walk: TracedCurve) -> int:
-    return sum(leg.v.size for leg in walk.curve.legs)
 
 
 def _walk(leads: ParametrizedTable, v: Array, side: float, care: TrackOptions) -> TracedCurve:
@@ -263,10 +261,6 @@ class Elsewhere:
     names: tuple[str, ...] = ()
 
 
-#: Finds the positions that exist for given inputs (p,), internal units; ``None``: not searched.
-ElsewhereAt = Callable[[Model, Array], Elsewhere | None]
-
-
 def positions_elsewhere(model: Model, inputs: Array) -> Elsewhere | None:
     """The positions of a mechanism for the inputs (p,): its configurations where they can be
     listed, else those that Newton-Raphson finds from many starts, block by block.
@@ -307,25 +301,24 @@ def block_positions(block: Block, v: Array) -> tuple[Array, bool]:
 
     ``v`` also holds the block's guess, around which lengths and plain numbers are looked for.
     """
-    dyad = dyad_of(block, v)
-    if dyad is not None:
-        polished, good = _solve_starts(block, v, dyad.roots)
-        return polished, bool(good.all()) and dyad.all_roots
     start = v[block.variables]
     n = len(block.unknowns)
-    linear = _is_linear(block)
+    form = dyad_form(block)
+    if form is not None:
+        known = start[None, n:]
+        (roots,) = solve_block(form, *form.closures(known, np.zeros_like(known)))
+        starts = form.unknowns(roots.x, np.repeat(known, len(roots.x), axis=0), start[:n])
+        polished, good = _solve_starts(block, v, starts)
+        return polished, bool(good.all()) and roots.grade.complete
+    table = block.system
+    # relative angles alone have one position
+    linear = isinstance(table, LoopTable) and not table.loops.rows and not table.functions
     found, _ = _solve_starts(block, v, start[None, :n] if linear else _starts(block, start[:n]))
     distinct: list[Array] = []
     for x in found:
         if all(distance(block, x, other) > _SAME_POSITION for other in distinct):
             distinct.append(x)
     return np.array(distinct).reshape(-1, n), linear and len(distinct) == 1
-
-
-def _is_linear(block: Block) -> bool:
-    """Relative angles alone: one position."""
-    table = block.system
-    return isinstance(table, LoopTable) and not table.loops.rows and not table.functions
 
 
 def _solve_starts(block: Block, v: Array, starts: Array) -> tuple[Array, BoolArray]:
@@ -364,13 +357,9 @@ def _starts(block: Block, guess: Array) -> Array:
     wide = np.maximum(size, 1.0) * np.array([1.0, 30.0])[:, None]
     sizes = np.stack([size, *wide])[np.arange(_STARTS) % 3]
     numbers = guess + sizes * np.tan(np.pi * 0.99 * (even - 0.5))
-    spread = numbers if _is_plain(block) else lengths
+    spread = numbers if block.system.is_enclosed else lengths
     starts: Array = np.where(turns, guess + 2.0 * np.pi * even, spread)
     return starts
-
-
-def _is_plain(block: Block) -> bool:
-    return block.system.is_enclosed
 
 
 def _recurrence_root(n: int) -> float:

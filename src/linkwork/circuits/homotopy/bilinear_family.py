@@ -17,24 +17,14 @@ from linkwork.circuits.homotopy.counts import (
     bound_by_products,
     bound_by_sums,
 )
-from linkwork.circuits.homotopy.dead_points import Renaming, Topology
-from linkwork.circuits.homotopy.isolated_roots import SEED
+from linkwork.circuits.homotopy.isolated_roots import RootFamily
 from linkwork.core.foundation.arrays import Array, ComplexArray
-from linkwork.core.numerics.bilinear import (
-    BilinearSystem,
-    Columns,
-    columns_of,
-    random_closures,
-    sums_hold,
-)
+from linkwork.core.numerics.bilinear import BilinearSystem, columns_of, sums_hold
 
 
 @dataclass(frozen=True)
-class Structure:
+class Structure(RootFamily[BilinearSystem]):
     """The structure of a family of systems: products, and columns as sums of free coefficients."""
-
-    rows: tuple[tuple[int, ...], ...]
-    columns: Columns
 
     def bound(self, found: int) -> SolutionBound:
         """The bound that ``found`` solutions reach, else the smallest one known."""
@@ -58,28 +48,9 @@ class Structure:
         """Whether this many solutions of a member are all, by a theorem."""
         return found == self.bound(found).number
 
-    @property
-    def topology(self) -> Topology:
-        """Products and sums."""
-        return Topology(rows=self.rows, columns=self.columns)
-
-    def random(self, rng: np.random.Generator) -> BilinearSystem:
-        """A member with random complex free coefficients."""
-        return self.member(*(random_closures(self.columns, rng) for _ in range(2)))
-
     def member(self, left: ComplexArray, right: ComplexArray) -> BilinearSystem:
         """The member with these closures."""
         return BilinearSystem(left=left, right=right, rows=np.array(self.rows))
-
-    def rename(self, x: ComplexArray, renaming: Renaming) -> ComplexArray:
-        """Solutions of another family's member as those of the same member of this one."""
-        return x[:, renaming.halves]
-
-    def generator(self, purpose: int) -> np.random.Generator:
-        """Random numbers of the family's own, the same in every run and in any order of calls."""
-        flat = [k for row in self.rows for k in row]
-        flat += [w + 1 for column in self.columns for entry in column for w in (*entry, 2)]
-        return np.random.default_rng([SEED, purpose, *flat])
 
     def from_products(self, goal: BilinearSystem, rng: np.random.Generator) -> StartHomotopy:
         """C(2L, L) paths to all isolated solutions of a member."""

@@ -16,6 +16,7 @@ from itertools import combinations
 
 import numpy as np
 
+from linkwork.circuits.homotopy.polynomial_system import ClosureSystem
 from linkwork.core.foundation.arrays import Array, ComplexArray, IndexArray
 from linkwork.core.numerics.bilinear import BilinearSystem
 
@@ -31,6 +32,22 @@ def normal_numbers(rng: np.random.Generator, *shape: int) -> ComplexArray:
     """Random complex numbers with normally distributed parts."""
     drawn: ComplexArray = rng.normal(size=shape) + 1j * rng.normal(size=shape)
     return drawn
+
+
+def closure_phases(
+    start: ClosureSystem, goal: ClosureSystem, rng: np.random.Generator, nearest: bool
+) -> ComplexArray:
+    """Phases (2,) for both closure matrices of the start.
+
+    Solutions do not change when a closure matrix is multiplied by a phase, but the path does:
+    phases are those that bring start and goal ``nearest`` together, or random ones.
+    """
+    turns: ComplexArray = np.exp(1j * rng.uniform(0.0, 2.0 * np.pi, 2))
+    if not nearest:
+        return turns
+    # the phase that makes the scalar product of both matrices real and positive
+    pairs = ((start.left, goal.left), (start.right, goal.right))
+    return np.array([np.exp(1j * np.angle(np.vdot(a, b))) for a, b in pairs])
 
 
 def _patch(rng: np.random.Generator, size: int) -> ComplexArray:
@@ -154,18 +171,11 @@ class ParameterHomotopy(_Patched):
         *,
         nearest: bool = False,
     ) -> ParameterHomotopy:
-        """A path of systems.
-
-        Solutions do not change when a closure matrix is multiplied by a phase, but the path does:
-        phases are those that bring start and goal ``nearest`` together, or random ones.
-        """
+        """A path of systems; see :func:`closure_phases`."""
         loops = goal.loops
         patches = (_patch(rng, loops + 1), _patch(rng, loops + 1))
-        turns = np.exp(1j * rng.uniform(0.0, 2.0 * np.pi, 2))
+        turns = closure_phases(start, goal, rng, nearest)
         pairs = ((start.left, goal.left), (start.right, goal.right))
-        if nearest:
-            # the phase that makes the scalar product of both matrices real and positive
-            turns = np.array([np.exp(1j * np.angle(np.vdot(a, b))) for a, b in pairs])
         p, q, p1, q1 = goal.rows
         signs = np.ones((2 * goal.size, 1))
         sides = []

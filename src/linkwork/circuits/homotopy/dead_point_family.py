@@ -18,16 +18,16 @@ from itertools import combinations, pairwise
 
 import numpy as np
 
-from linkwork.circuits.homotopy.bilinear_homotopy import normal_numbers, null_space
+from linkwork.circuits.homotopy.bilinear_homotopy import (
+    closure_phases,
+    normal_numbers,
+    null_space,
+)
 from linkwork.circuits.homotopy.dead_points import (
     DeadPointSystem,
-    Renaming,
-    Slot,
-    Topology,
     most_dead_points,
-    norm_of,
 )
-from linkwork.circuits.homotopy.isolated_roots import SEED, isolated_roots
+from linkwork.circuits.homotopy.isolated_roots import RootFamily, isolated_roots
 from linkwork.circuits.homotopy.polynomial_system import (
     PolynomialSystem,
     Roots,
@@ -35,7 +35,7 @@ from linkwork.circuits.homotopy.polynomial_system import (
     polish_roots,
 )
 from linkwork.core.foundation.arrays import Array, ComplexArray, IndexArray
-from linkwork.core.numerics.bilinear import BilinearSystem, Columns, columns_of, random_closures
+from linkwork.core.numerics.bilinear import BilinearSystem, columns_of
 
 _INFINITE = 1e-7  # an eigenvalue this small belongs to an infinite t
 _CLEAR = 1e6  # condition, and size: beyond them it is left to paths whether one is regular, finite
@@ -285,13 +285,8 @@ class _FromRelative(_Straight):
 
 
 @dataclass(frozen=True)
-class DeadPointFamily:
+class DeadPointFamily(RootFamily[DeadPointSystem]):
     """Systems with the same products and rates and the same sums within columns."""
-
-    rows: tuple[tuple[int, ...], ...]
-    columns: Columns
-    own: int
-    slots: tuple[Slot, ...]
 
     @classmethod
     def of(cls, system: DeadPointSystem) -> DeadPointFamily:
@@ -307,33 +302,10 @@ class DeadPointFamily:
         """Whether this many solutions of a member are all, by Bézout's theorem."""
         return found == most_dead_points(self.own, len(self.rows[0]))
 
-    @property
-    def topology(self) -> Topology:
-        """Products, sums and rates."""
-        return Topology(rows=self.rows, columns=self.columns, own=self.own, slots=self.slots)
-
-    def random(self, rng: np.random.Generator) -> DeadPointSystem:
-        """A member with random complex free coefficients."""
-        return self.member(*(random_closures(self.columns, rng) for _ in range(2)))
-
     def member(self, left: ComplexArray, right: ComplexArray) -> DeadPointSystem:
         """The member with these closures."""
         rows = np.array(self.rows)
         return DeadPointSystem(left=left, right=right, rows=rows, own=self.own, slots=self.slots)
-
-    def rename(self, x: ComplexArray, renaming: Renaming) -> ComplexArray:
-        """Solutions of another family's member as those of the same member of this one."""
-        halves = renaming.halves
-        rates = x[:, len(halves) + renaming.rates]
-        normed = rates / (rates @ norm_of(self.own))[:, None]
-        return np.concatenate([x[:, halves], normed], axis=1)
-
-    def generator(self, purpose: int) -> np.random.Generator:
-        """Random numbers of the family's own, the same in every run and in any order of calls."""
-        flat = [self.own, *(k for row in self.rows for k in row)]
-        flat += [w + 1 for column in self.columns for entry in column for w in (*entry, 2)]
-        flat += [abs(round(w)) for slot in self.slots for w in slot]
-        return np.random.default_rng([SEED, 1, purpose, *flat])
 
     def from_products(self, goal: DeadPointSystem, rng: np.random.Generator) -> _FromProducts:
         """2 own C(2L + 1, L) paths to all isolated solutions of a member."""
@@ -348,10 +320,7 @@ class DeadPointFamily:
         nearest: bool = False,
     ) -> _FromRelative:
         """Paths from member to member; phases of closures change the path but no solution."""
-        turns = np.exp(2j * np.pi * rng.uniform(size=2))
-        if nearest:
-            pairs = ((start.left, goal.left), (start.right, goal.right))
-            turns = np.array([np.exp(1j * np.angle(np.vdot(a, b))) for a, b in pairs])
+        turns = closure_phases(start, goal, rng, nearest)
         turned = replace(start, left=turns[0] * start.left, right=turns[1] * start.right)
         return _FromRelative.between(turned, goal, rng)
 

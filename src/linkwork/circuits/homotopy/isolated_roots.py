@@ -8,20 +8,21 @@ member is solved once from products of linear forms, until closed paths lead to 
 
 from __future__ import annotations
 
-from collections.abc import Hashable
+from abc import ABC, abstractmethod
 from dataclasses import dataclass, replace
+from functools import cached_property
 from typing import Any, Generic, Protocol, TypeVar
 
 import numpy as np
 
-from linkwork.circuits.homotopy.dead_points import Renaming, Topology
+from linkwork.circuits.homotopy.dead_points import Renaming, Topology, norm_of
 from linkwork.circuits.homotopy.parameter_roots import StartSet, read_sets, write_set
 from linkwork.circuits.homotopy.path_tracking import (
     ARRIVED,
     BOLD,
     CAREFUL,
-    LOST,
     SINGULAR,
+    Ends,
     Homotopy,
     PathOptions,
     Paths,
@@ -29,6 +30,7 @@ from linkwork.circuits.homotopy.path_tracking import (
 )
 from linkwork.circuits.homotopy.polynomial_system import (
     SAME_ROOT,
+    ClosureSystem,
     PolynomialSystem,
     Roots,
     distinct_solutions,
@@ -36,6 +38,7 @@ from linkwork.circuits.homotopy.polynomial_system import (
     polish_roots,
 )
 from linkwork.core.foundation.arrays import Array, BoolArray, ComplexArray
+from linkwork.core.numerics.bilinear import random_closures
 
 #: All random numbers follow from this one, so that every run gives the same answer.
 SEED = 20_210_501
@@ -48,16 +51,6 @@ _FEW = 8  # paths that seldom meet, so that following them twice costs less than
 _LOOPS = 2  # closed paths without a new solution after which a set counts as complete
 _STEPS_TO_MULTIPLE = 30  # of Gauss-Newton; each halves the distance to a double solution
 _TRIES = 30  # closed paths at most
-
-
-class ClosureSystem(PolynomialSystem, Protocol):
-    """Polynomials that follow from closures, ``left`` (L, K) of U and ``right`` of V."""
-
-    @property
-    def left(self) -> ComplexArray: ...
-
-    @property
-    def right(self) -> ComplexArray: ...
 
 
 S = TypeVar("S", bound=ClosureSystem)
@@ -82,35 +75,52 @@ class HomotopyFromRelative(_ToSystem, Protocol):
         """Solutions x (B, n) of the first member as points at σ = 1."""
 
 
-class RootFamily(Hashable, Protocol[S]):
-    """Systems that differ in free coefficients only."""
+@dataclass(frozen=True)
+class RootFamily(Topology, ABC, Generic[S]):
+    """Systems of one topology: they differ in free coefficients only."""
 
-    @property
-    def topology(self) -> Topology:
-        """The products, sums and rates that all members have."""
-
+    @abstractmethod
     def complete(self, found: int) -> bool:
         """Whether this many solutions of a member are all, by a theorem."""
 
-    def random(self, rng: np.random.Generator) -> S:
-        """A member with random complex free coefficients."""
-
+    @abstractmethod
     def member(self, left: ComplexArray, right: ComplexArray) -> S:
         """The member with these closures (L, K)."""
 
-    def rename(self, x: ComplexArray, renaming: Renaming) -> ComplexArray:
-        """Solutions (B, n) of another family's member as those of the same member of this one."""
-
-    def generator(self, purpose: int) -> np.random.Generator:
-        """Random numbers of the family's own, the same in every run and in any order of calls."""
-
+    @abstractmethod
     def from_products(self, goal: S, rng: np.random.Generator) -> HomotopyFromProducts:
         """Paths to all isolated solutions of a member."""
 
+    @abstractmethod
     def between(
         self, start: S, goal: S, rng: np.random.Generator, *, nearest: bool = False
     ) -> HomotopyFromRelative:
         """Paths from member to member: random ones, or those with the ``nearest`` start."""
+
+    @cached_property
+    def topology(self) -> Topology:
+        """The products, sums and rates that all members have."""
+        return Topology(rows=self.rows, columns=self.columns, own=self.own, slots=self.slots)
+
+    def random(self, rng: np.random.Generator) -> S:
+        """A member with random complex free coefficients."""
+        return self.member(*(random_closures(self.columns, rng) for _ in range(2)))
+
+    def rename(self, x: ComplexArray, renaming: Renaming) -> ComplexArray:
+        """Solutions (B, n) of another family's member as those of the same member of this one."""
+        halves = renaming.halves
+        rates = x[:, len(halves) + renaming.rates]
+        normed = rates / (rates @ norm_of(self.own))[:, None]
+        return np.concatenate([x[:, halves], normed], axis=1)
+
+    def generator(self, purpose: int) -> np.random.Generator:
+        """Random numbers of the family's own, the same in every run and in any order of calls."""
+        flat = [k for row in self.rows for k in row]
+        flat += [w + 1 for column in self.columns for entry in column for w in (*entry, 2)]
+        if not self.own:
+            return np.random.default_rng([SEED, purpose, *flat])
+        rates = [abs(round(w)) for slot in self.slots for w in slot]
+        return np.random.default_rng([SEED, 1, purpose, self.own, *flat, *rates])
 
 
 @dataclass(frozen=True)
@@ -123,22 +133,6 @@ class _Goal:
         """H and ∂H/∂w at σ = 0."""
         value, jacobian, _ = self.homotopy.evaluate(x, np.zeros(len(x)))
         return value, jacobian
-
-
-@dataclass(frozen=True, kw_only=True, eq=False)
-class _Ends:
-    """Where paths ended: finite regular, infinite, singular, failed."""
-
-    x: ComplexArray
-    regular: BoolArray
-    infinite: BoolArray
-    singular: BoolArray
-    failed: BoolArray
-
-
-def _all_regular(x: ComplexArray) -> _Ends:
-    no = np.zeros(len(x), dtype=bool)
-    return _Ends(x=x, regular=~no, infinite=no, singular=no, failed=no)
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -168,10 +162,11 @@ def isolated_roots(system: S, family: RootFamily[S], known: ComplexArray | None 
     """
     generic = random_member(family)
     if known is not None and len(known) == len(generic.x):
-        return _roots(system, _all_regular(known), generic)
+        no = np.zeros(len(known), dtype=bool)
+        return _roots(system, Ends(x=known, regular=~no, infinite=no, singular=no), generic)
     rng = family.generator(1)
     expected = len(generic.x)
-    best: _Ends | None = None
+    best: Ends | None = None
     for attempt in range(_ATTEMPTS):
         care = CAREFUL if attempt else BOLD if expected <= _FEW else PathOptions()
         ends = _follow_paths(family, generic, system, rng, care, nearest=not attempt)
@@ -179,17 +174,17 @@ def isolated_roots(system: S, family: RootFamily[S], known: ComplexArray | None 
             # two independent sets of paths that agree: missing solutions are at infinity
             agreed = best is not None and _agree(ends, best)
             best = ends
-            if ends.regular.all() or (agreed and not ends.failed.any()):
+            if ends.regular.all() or (agreed and not ends.lost.any()):
                 break
     assert best is not None
     return _roots(system, best, generic)
 
 
-def _quality(ends: _Ends) -> tuple[int, int]:
-    return (-int(ends.failed.sum()), int(ends.regular.sum()))
+def _quality(ends: Ends) -> tuple[int, int]:
+    return (-int(ends.lost.sum()), int(ends.regular.sum()))
 
 
-def _agree(a: _Ends, b: _Ends) -> bool:
+def _agree(a: Ends, b: Ends) -> bool:
     """Whether two sets of paths found the same regular solutions."""
     x, y = a.x[a.regular], b.x[b.regular]
     return len(x) == len(y) == len(distinct_solutions(np.concatenate([x, y])))
@@ -237,7 +232,7 @@ def solve_random_member(family: RootFamily[S], purpose: int = 0) -> Solved[S]:
         ends = _classify_ends(system, start, track(start, start.starts(), CAREFUL))
         found = ends.x[ends.regular]
         x = distinct_solutions(np.concatenate([x, found])) if attempt else distinct_solutions(found)
-        clean += not (ends.failed | ends.singular | _meeting(ends)).any()
+        clean += not (ends.lost | ends.singular | _meeting(ends)).any()
         if (clean and len(x)) or clean == _LOOPS:
             break
     # without solutions closed paths prove nothing: all paths have to run to infinity twice
@@ -271,30 +266,29 @@ def _follow_paths(
     options: PathOptions,
     *,
     nearest: bool = False,
-) -> _Ends:
+) -> Ends:
     """Paths from all solutions of one system; those that were lost or met once more, with care."""
     homotopy = family.between(generic.system, goal, rng, nearest=nearest)
     start = homotopy.starts(generic.x)
     paths = track(homotopy, start, options)
     ends = _classify_ends(goal, homotopy, paths)
-    again = ends.failed | _meeting(ends)
+    again = ends.lost | _meeting(ends)
     if again.any() and options is not CAREFUL:
         once_more = track(homotopy, start[again], CAREFUL)
         w, near, state = paths.w.copy(), paths.near.copy(), paths.state.copy()
         w[again], near[again], state[again] = once_more.w, once_more.near, once_more.state
         joined = Paths(w=w, near=near, state=state, steps=paths.steps + once_more.steps)
         ends = _classify_ends(goal, homotopy, joined)
-        again = ends.failed | _meeting(ends)
+        again = ends.lost | _meeting(ends)
     return replace(
         ends,
         regular=ends.regular & ~again,
         infinite=ends.infinite & ~again,
         singular=ends.singular & ~again,
-        failed=again,
     )
 
 
-def _classify_ends(system: PolynomialSystem, homotopy: _ToSystem, paths: Paths) -> _Ends:
+def _classify_ends(system: PolynomialSystem, homotopy: _ToSystem, paths: Paths) -> Ends:
     """Ends of paths in the system's unknowns: regular, infinite, singular or failed."""
     (x, scale), (_, before) = homotopy.points(paths.w), homotopy.points(paths.near)
     singular = paths.state == SINGULAR
@@ -313,12 +307,11 @@ def _classify_ends(system: PolynomialSystem, homotopy: _ToSystem, paths: Paths) 
     for k in np.flatnonzero(finite & ~regular):
         infinite[k] = _multiple_at_infinity(homotopy, paths.w[k], float(scale[k]))
     finite &= ~infinite
-    return _Ends(
+    return Ends(
         x=x,
         regular=regular,
         infinite=infinite,
         singular=(singular & ~infinite) | (finite & ~regular),
-        failed=paths.state == LOST,
     )
 
 
@@ -333,7 +326,7 @@ def _multiple_at_infinity(homotopy: _ToSystem, w: ComplexArray, scale: float) ->
     return bool(sharp[0] < max(_FINITE_MULTIPLE, _FADING * scale))
 
 
-def _meeting(ends: _Ends) -> BoolArray:
+def _meeting(ends: Ends) -> BoolArray:
     """Paths that ended at the same regular solution: one of them has jumped."""
     met = np.zeros(len(ends.x), dtype=bool)
     place = np.flatnonzero(ends.regular)
@@ -353,7 +346,7 @@ def _near_another(x: ComplexArray) -> BoolArray:
     return near
 
 
-def _roots(system: S, ends: _Ends, generic: Solved[S]) -> Roots:
+def _roots(system: S, ends: Ends, generic: Solved[S]) -> Roots:
     multiple = distinct_solutions(ends.x[ends.singular], 1e-2)
     curved = np.array([_on_a_curve(system, x) for x in multiple], dtype=bool)
     return Roots(
@@ -362,7 +355,7 @@ def _roots(system: S, ends: _Ends, generic: Solved[S]) -> Roots:
         paths=len(generic.x),
         at_infinity=int(ends.infinite.sum()),
         singular=int(ends.singular.sum()),
-        failed=int(ends.failed.sum()),
+        failed=int(ends.lost.sum()),
         expected=len(generic.x),
         sure=generic.sure,
         continuum=bool(curved.any()),

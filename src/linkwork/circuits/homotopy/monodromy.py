@@ -59,18 +59,6 @@ class Member:
     x: ComplexArray
 
 
-def solve_by_monodromy(
-    family: Family,
-    rng: np.random.Generator,
-    tracker: Tracker,
-    report: Callable[[int], object] = lambda found: None,
-    idle: int = IDLE,
-) -> Member:
-    """A random member with the solutions that closed paths lead to; ``report`` their number."""
-    c, one = family.random_member(rng)
-    return solve_further(family, Member(parameters=c, x=one[None]), rng, tracker, report, idle)
-
-
 def solve_further(
     family: Family,
     member: Member,
@@ -79,7 +67,8 @@ def solve_further(
     report: Callable[[int], object] = lambda found: None,
     idle: int = IDLE,
 ) -> Member:
-    """A member with the solutions that closed paths from known ones lead to.
+    """A member with the solutions that closed paths from known ones lead to; ``report`` their
+    number.
 
     ``idle``: closed paths without a new solution after which no more are tried.
     """
@@ -330,7 +319,8 @@ def solve_and_confirm(
     rounds : int
         Trace tests at most; the last result is returned, confirmed or not.
     """
-    member = solve_by_monodromy(family, rng, tracker, report, idle)
+    c, one = family.random_member(rng)
+    member = solve_further(family, Member(parameters=c, x=one[None]), rng, tracker, report, idle)
     while True:
         rounds -= 1
         found = _tested(family, member, rng, tracker, reach, directions)

@@ -24,6 +24,7 @@ from linkwork.circuits.homotopy.path_tracking import (
     QUICK,
     SINGULAR,
     SURE,
+    Ends,
     ParameterPath,
     PathOptions,
     Tracker,
@@ -101,20 +102,6 @@ class ParameterRoots:
         return Completeness.MULTIPLE if several else Completeness.WITH_PROBABILITY_ONE
 
 
-@dataclass(frozen=True, kw_only=True, eq=False)
-class _Ends:
-    """Ends of paths in the unknowns, (B, n), and what they are, (B,)."""
-
-    x: ComplexArray
-    regular: BoolArray
-    infinite: BoolArray
-    singular: BoolArray
-
-    @property
-    def lost(self) -> BoolArray:
-        return ~(self.regular | self.infinite | self.singular)
-
-
 class _Search:
     """The search for the solutions of one member."""
 
@@ -160,7 +147,7 @@ class _Search:
             closed=closed,
         )
 
-    def _straight(self) -> _Ends:
+    def _straight(self) -> Ends:
         """The straight paths; those that were lost or met a second time, with care."""
         ends = self._follow(self.member.parameters, self.member.x, QUICK)
         again = np.flatnonzero(ends.lost | self._meeting(ends))
@@ -191,7 +178,7 @@ class _Search:
         ends = self._follow(way, paths.w[paths.state == ARRIVED], QUICK)
         return ends.x[ends.regular]
 
-    def _follow(self, start: ComplexArray, x: ComplexArray, options: PathOptions) -> _Ends:
+    def _follow(self, start: ComplexArray, x: ComplexArray, options: PathOptions) -> Ends:
         path = ParameterPath(system=self.family, start=start, goal=self.goal)
         paths = self.tracker(path, x, options)
         arrived = np.flatnonzero(paths.state == ARRIVED)
@@ -204,7 +191,7 @@ class _Search:
         ended = paths.state == SINGULAR
         infinite = ended & ((size > _FAR * before) | (size > _VERY_FAR))
         singular = multiple | (ended & ~infinite)
-        return _Ends(x=w, regular=regular, infinite=infinite, singular=singular)
+        return Ends(x=w, regular=regular, infinite=infinite, singular=singular)
 
     def _close(self, found: ComplexArray) -> tuple[ComplexArray, int, bool]:
         """Solutions with their mirror images, how many those are, and whether all are there."""
@@ -230,7 +217,7 @@ class _Search:
         apart: ComplexArray = ends[~np.array(near, dtype=bool)]
         return apart
 
-    def _meeting(self, ends: _Ends) -> BoolArray:
+    def _meeting(self, ends: Ends) -> BoolArray:
         """Paths that ended at the same regular solution: one of them has jumped."""
         place = np.flatnonzero(ends.regular)
         prints = self.family.fingerprint(ends.x[place], self.goal)

@@ -131,6 +131,21 @@ class Paths:
     steps: int
 
 
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Ends:
+    """Ends of paths in the unknowns, (B, n), and what they are, (B,)."""
+
+    x: ComplexArray
+    regular: BoolArray
+    infinite: BoolArray
+    singular: BoolArray
+
+    @property
+    def lost(self) -> BoolArray:
+        """Those that are nothing else."""
+        return ~(self.regular | self.infinite | self.singular)
+
+
 def track(
     homotopy: Homotopy,
     start: ComplexArray,

@@ -8,6 +8,7 @@ from typing import Protocol
 
 import numpy as np
 
+from linkwork.circuits.results import PathCount
 from linkwork.core.foundation.arrays import ComplexArray, CountArray, solutions
 
 SAME_ROOT = 1e-6  # two solutions are the same one
@@ -19,6 +20,16 @@ class PolynomialSystem(Protocol):
 
     def residual_and_jacobian(self, x: ComplexArray) -> tuple[ComplexArray, ComplexArray]:
         """F, (B, n), and its derivative, (B, n, n), at x (B, n)."""
+
+
+class ClosureSystem(PolynomialSystem, Protocol):
+    """Polynomials that follow from closures, ``left`` (L, K) of U and ``right`` of V."""
+
+    @property
+    def left(self) -> ComplexArray: ...
+
+    @property
+    def right(self) -> ComplexArray: ...
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -53,6 +64,28 @@ class Roots:
     sure: bool
     continuum: bool
     curves: ComplexArray
+
+    @property
+    def accounted_for(self) -> bool:
+        """Whether every path has an end of its own."""
+        return self.paths == len(self.x) + self.at_infinity + self.singular and not self.failed
+
+    def counted(
+        self, unknowns: tuple[str, ...], real: int, bound: int, theorem: str = ""
+    ) -> PathCount:
+        """The counts of all ends, and of ``real`` solutions."""
+        return PathCount(
+            unknowns=unknowns,
+            paths=self.paths,
+            finite=len(self.x),
+            real=real,
+            at_infinity=self.at_infinity,
+            multiple=self.singular,
+            failed=self.failed,
+            expected=self.expected,
+            bound=bound,
+            theorem=theorem,
+        )
 
 
 def polish_roots(system: PolynomialSystem, x: ComplexArray) -> tuple[ComplexArray, CountArray]:

@@ -454,7 +454,7 @@ class Mechanism:
         >>> round(press.forces(at=60)["crank.effort"])
         3644
         """
-        forces = wings.use("forces.reactions")
+        forces = wings.use("forces.reactions.solving")
         if at is not None or not self.model.equations.inputs:
             position = self.solve(at, configuration=configuration)
             return forces.forces_of_position(self.model, position, self.place)
@@ -520,7 +520,7 @@ class Mechanism:
         >>> round(float(motion["A.x"][-1]), 12)
         -0.275087462576
         """
-        return wings.use("forces.dynamics").simulate(
+        return wings.use("forces.dynamics.simulation").simulate(
             self.model,
             until=until,
             step=step,

@@ -78,13 +78,15 @@ def first_position(
     status = Status.of_code(int(done.status[0]))
     failure = None
     if not status.ok and explained:
-        status, failure = wings.use("circuits.failure").no_position(
+        status, failure = wings.use("circuits.failure.failing").no_position(
             model, v, status, int(done.failed_block[0]), options
         )
     if status.ok and not roots_proved(solver, done.v)[0]:
         status = Status.ROOT_NOT_PROVED
         if explained:
-            failure = wings.use("circuits.failure").root_not_proved(model, v, done.v[0], options)
+            failure = wings.use("circuits.failure.failing").root_not_proved(
+                model, v, done.v[0], options
+            )
     trails = []
     for k, watcher in enumerate(watchers):
         if watcher.steps:
@@ -200,7 +202,7 @@ def solve(
             and not from_guess
             and not np.array_equal(inputs, model.start_inputs)
         ):
-            failure = wings.use("circuits.failure").without_start(model, failure, inputs)
+            failure = wings.use("circuits.failure.failing").without_start(model, failure, inputs)
         position = failed_position(model, target, start.status, failure, start)
     elif from_guess or np.array_equal(inputs, model.start_inputs):
         found = _arrived(model, start, certify)
@@ -210,7 +212,7 @@ def solve(
         if isinstance(reached, following.OutOfReach):
             position = failed_position(model, target, reached.status, reached.failure, start)
         elif reached.status.ok and not roots_proved(model.compiled.solver, reached.v[None, :])[0]:
-            failure = wings.use("circuits.failure").root_not_proved(
+            failure = wings.use("circuits.failure.failing").root_not_proved(
                 model, start.v, reached.v, options
             )
             last = replace(start, v=reached.v, residual=reached.residual)
@@ -257,7 +259,7 @@ def _other_root(model: Model, found: Array) -> Failure | None:
         slopes = block.system.jacobian(both)[:, :, : len(block.unknowns)]
         # the guess and the position lie on different sides of a dead point
         if np.prod(np.sign(np.linalg.det(slopes))) <= 0.0:
-            return wings.use("circuits.failure").another_root(model, found)
+            return wings.use("circuits.failure.failing").another_root(model, found)
         # the next block is compared with its known variables as solved
         here[block.unknowns] = found[block.unknowns]
     return None

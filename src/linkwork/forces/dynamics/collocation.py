@@ -1,4 +1,4 @@
-"""Steps of s̈ = a(s, ṡ, t) by collocation at Gauss points, with polynomials between.
+"""Steps of s̈ = a(s, ṡ, t), of one number or several, by collocation at Gauss points.
 
 At n points the polynomial of degree n - 1 for s̈ equals a; its integrals give ṡ and s. The ends of
 steps are of order 2n (Hairer, Lubich, Wanner, Geometric Numerical Integration, II.1.3); between
@@ -21,15 +21,13 @@ from linkwork.core.foundation.rounding import EPSILON
 
 POINTS = 12
 _MOST_ROUNDS = 12
-_COLLOCATION_SETTLED = 1e-15  # of the accelerations: a change that is rounding
+_SETTLED = 1e-15  # of the accelerations: a change that is rounding
+_UNSETTLED = 1e-10  # a larger change after all rounds: the iteration has failed
 _TOLERANCE = 1e-13  # of the speed: error of the polynomial between the ends of a step
-_COLLOCATION_ROUNDING, _COLLOCATION_GROWTH = (
-    1e-9,
-    1.5,
-)  # of the accelerations: more is none; of steps with it
-_COLLOCATION_LARGEST, _COLLOCATION_SMALLEST, _COLLOCATION_SAFETY = 3.0, 0.2, 0.8
+_ROUNDING = 1e-9  # of the accelerations: last coefficients above that are not rounding
+_LARGEST, _SMALLEST, _SAFETY, _GROWTH = 3.0, 0.2, 0.8, 1.5  # of steps; the last with rounding
 _LOOKS = 33  # places of a step at which it may have left its leg
-NOISE = 16.0  # roundings of a place in an acceleration
+_NOISE = 16.0  # roundings of a place in an acceleration
 
 _x, _w = legendre.leggauss(POINTS)
 FIT = np.linalg.inv(legendre.legvander(_x, POINTS - 1))
@@ -46,26 +44,27 @@ PLACE = _integrals(SPEED)  # (n + 2, n)
 AT_SPEED = legendre.legvander(_x, POINTS) @ SPEED
 AT_PLACE = legendre.legvander(_x, POINTS + 1) @ PLACE
 
+#: Accelerations (B, ...) at places (B, ...), speeds (B, ...) and times (B,).
+Acceleration = Callable[[Array, Array, Array], Array]
+
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Step:
-    """A step from ``t`` to ``t + h``: s, ṡ at its beginning, accelerations at its points (n,)."""
+    """A step from ``t`` to ``t + h``: s, ṡ at its beginning, accelerations at its points.
+
+    s and ṡ are numbers with accelerations (n,), or vectors (p,) with accelerations (n, p).
+    """
 
     t: float
     h: float
-    s: float
-    speed: float
+    s: float | Array
+    speed: float | Array
     accelerations: Array
-
-    @property
-    def start(self) -> tuple[float, float]:
-        """The state at its beginning."""
-        return self.s, self.speed
 
     @cached_property
     def _coefficients(self) -> Array:
         """Of the place beyond that at constant speed, the gained speed, the acceleration."""
-        found = np.zeros((POINTS + 2, 3))
+        found = np.zeros((POINTS + 2, 3, *self.accelerations.shape[1:]))
         found[:, 0] = self.h**2 * (PLACE @ self.accelerations)
         found[:-1, 1] = self.h * (SPEED @ self.accelerations)
         found[:-2, 2] = FIT @ self.accelerations
@@ -74,8 +73,9 @@ class Step:
     def at(self, t: Array) -> tuple[Array, Array, Array]:
         """s, ṡ and s̈ at times (B,) within the step."""
         x = 2.0 * (np.asarray(t) - self.t) / self.h - 1.0
-        moved, gained, bend = (legendre.legvander(x, POINTS + 1) @ self._coefficients).T
-        place: Array = self.s + 0.5 * (x + 1.0) * self.h * self.speed + moved
+        powers = legendre.legvander(x, POINTS + 1)
+        moved, gained, bend = np.moveaxis(np.tensordot(powers, self._coefficients, 1), 1, 0)
+        place: Array = self.s + np.multiply.outer(0.5 * (x + 1.0) * self.h, self.speed) + moved
         return place, self.speed + gained, bend
 
     @property
@@ -91,86 +91,92 @@ class Step:
 
 
 def try_step(
-    acceleration: Callable[[Array, Array, Array], Array],
+    acceleration: Acceleration,
     t: float,
-    s: float,
-    speed: float,
+    s: float | Array,
+    speed: float | Array,
     h: float,
+    *,
+    unit: float = 0.0,
     rougher: float = math.inf,
 ) -> tuple[Step | None, float, float]:
     """A step of the length ``h``, ``None`` if it does not succeed, the length to try next, and its
-    last coefficients relative to the accelerations; ``rougher``: those of the longer step before.
+    last coefficients relative to the accelerations.
+
+    ``unit``: the natural size of places, all of one size, if they have one; ``rougher``: the last
+    coefficients of the longer step before.
     """
     times = t + h * C
-    guess = acceleration(np.array([s]), np.array([speed]), np.array([t]))
-    if not np.isfinite(guess[0]):
-        return None, _COLLOCATION_SMALLEST * h, math.inf
-    a = np.full(POINTS, float(guess[0]))
+    a = np.repeat(acceleration(np.array([s]), np.array([speed]), np.array([t])), POINTS, axis=0)
+    if not np.isfinite(a).all():
+        return None, _SMALLEST * h, math.inf
     jacobian, floor = None, 0.0
     for round_ in range(_MOST_ROUNDS):
         w = speed + h * (AT_SPEED @ a)
-        place = s + h * C * speed + h**2 * (AT_PLACE @ a)
+        place = s + np.multiply.outer(h * C, speed) + h**2 * (AT_PLACE @ a)  # eq. (97)
         if jacobian is None or round_ == _MOST_ROUNDS // 2:
-            found, jacobian, steepest = _collocation_linearise(acceleration, place, w, times, h)
-            floor = NOISE * EPSILON * float(np.abs(place).max()) * steepest
+            found, jacobian, steepest = _linearise(acceleration, place, w, times, h, unit)
+            floor = _NOISE * EPSILON * (unit + float(np.abs(place).max())) * steepest
         else:
             found = acceleration(place, w, times)
         if not np.isfinite(found).all() or not np.isfinite(jacobian).all():
-            return None, _COLLOCATION_SMALLEST * h, math.inf
-        change = np.linalg.solve(jacobian, found - a)
+            return None, _SMALLEST * h, math.inf
+        change = np.linalg.solve(jacobian, (found - a).ravel()).reshape(a.shape)
         a = a + change
         if not np.isfinite(a).all():
-            return None, _COLLOCATION_SMALLEST * h, math.inf
-        size = np.abs(a).max() + abs(speed) / abs(h)
-        if np.abs(change).max() <= _COLLOCATION_SETTLED * POINTS * size:
+            return None, _SMALLEST * h, math.inf
+        size = np.abs(a).max() + np.abs(speed).max() / abs(h)
+        if np.abs(change).max() <= max(_SETTLED * POINTS * size, floor):
             break
     else:
-        if np.abs(change).max() > 1e-10 * size:
+        if np.abs(change).max() > max(_UNSETTLED * size, floor):
             return None, 0.5 * h, math.inf
     tail, largest = float(np.abs((FIT @ a)[-2:]).max()), float(np.abs(a).max())
-    scale = max(abs(speed), abs(h) * largest)
+    scale = max(float(np.abs(speed).max()), abs(h) * largest)
     rough = tail / largest if largest > 0.0 else 0.0
     error = abs(h) * tail / scale if scale > 0.0 else 0.0
-    factor = _COLLOCATION_LARGEST
+    factor = _LARGEST
     if error > 0.0:
-        factor = min(
-            _COLLOCATION_LARGEST, _COLLOCATION_SAFETY * (_TOLERANCE / error) ** (1.0 / POINTS)
-        )
+        factor = min(_LARGEST, _SAFETY * (_TOLERANCE / error) ** (1.0 / POINTS))
     # where large forces balance, what a shorter step does not reduce is their rounding
-    noise = rough < _COLLOCATION_ROUNDING and rough > 0.5 * rougher
+    noise = rough < _ROUNDING and rough > 0.5 * rougher
     # near rest accelerations follow places to rounding only
     noise |= tail <= floor
     if error > 30.0 * _TOLERANCE and not noise:
-        return None, max(_COLLOCATION_SMALLEST, min(factor, 0.7)) * h, rough
-    factor = _COLLOCATION_GROWTH if noise else factor
+        return None, max(_SMALLEST, min(factor, 0.7)) * h, rough
+    factor = _GROWTH if noise else factor
     step = Step(t=t, h=h, s=s, speed=speed, accelerations=a)
-    return step, max(factor, _COLLOCATION_SMALLEST) * h, rough
+    return step, max(factor, _SMALLEST) * h, rough
 
 
-def _collocation_linearise(
-    acceleration: Callable[[Array, Array, Array], Array],
-    place: Array,
-    w: Array,
-    times: Array,
-    h: float,
+def _linearise(
+    acceleration: Acceleration, place: Array, w: Array, times: Array, h: float, unit: float
 ) -> tuple[Array, Array, float]:
-    """Accelerations at all points, the Jacobian of the collocation equations, (n, n), and the
-    largest derivative by the place.
+    """Accelerations at all points, the Jacobian of the collocation equations, (np, np), and the
+    largest derivative by a place.
     """
+    count, p = len(place), place[0].size
     eps = math.sqrt(EPSILON)
     # of the way of the step, so that units change nothing
-    ds = eps * (max(float(np.abs(h * w).max()), float(np.abs(place).max()) * eps) or 1.0)
+    way = max(float(np.abs(h * w).max()), unit, float(np.abs(place).max()) * eps)
+    ds = eps * (way or 1.0)
     dw = eps * max(float(np.abs(w).max()), abs(ds / h))
+    units = np.eye(p).reshape(p, *place.shape[1:])
+    places = [place, *(place + ds * one for one in units), *[place] * p]
+    speeds = [w] * (p + 1) + [w + dw * one for one in units]
     many = acceleration(
-        np.concatenate([place, place + ds, place]),
-        np.concatenate([w, w, w + dw]),
-        np.concatenate([times] * 3),
-    ).reshape(3, -1)
-    by_place, by_speed = (many[1] - many[0]) / ds, (many[2] - many[0]) / dw
+        np.concatenate(places), np.concatenate(speeds), np.tile(times, 2 * p + 1)
+    ).reshape(2 * p + 1, count, p)
+    # (n, p, p): which acceleration, by which number
+    by_place = np.moveaxis(many[1 : p + 1] - many[0], 0, -1) / ds
+    by_speed = np.moveaxis(many[p + 1 :] - many[0], 0, -1) / dw
     jacobian = (
-        np.eye(POINTS) - by_place[:, None] * (h**2 * AT_PLACE) - by_speed[:, None] * (h * AT_SPEED)
+        np.eye(count * p).reshape(count, p, count, p)
+        - np.einsum("iab,ij->iajb", by_place, h**2 * AT_PLACE)
+        - np.einsum("iab,ij->iajb", by_speed, h * AT_SPEED)
     )
-    return many[0], jacobian, float(np.abs(by_place).max())
+    steepest = float(np.abs(by_place).max())
+    return many[0].reshape(place.shape), jacobian.reshape(count * p, count * p), steepest
 
 
 def shorter_step(step: Step, low: float, high: float) -> float | None:
@@ -187,149 +193,13 @@ def shorter_step(step: Step, low: float, high: float) -> float | None:
 
 
 # ----------------------------------------------------------------------
-# Steps of q̈ = a(q, q̇, t) for several numbers at once, by collocation at Gauss points.
-#
-# The scheme is that of :mod:`linkwork.dynamics.collocation`, for vectors (p,).
-
-
-_VECTOR_COLLOCATION_SETTLED = 1e-14  # of the accelerations: a change that is rounding
-_UNSETTLED = 1e-10  # a larger change after all rounds: the iteration has failed
-(
-    _VECTOR_COLLOCATION_LARGEST,
-    _VECTOR_COLLOCATION_SMALLEST,
-    _VECTOR_COLLOCATION_SAFETY,
-    _VECTOR_COLLOCATION_GROWTH,
-) = 3.0, 0.2, 0.8, 1.5
-
-#: Accelerations (B, p) at places (B, p), speeds (B, p) and times (B,).
-Acceleration = Callable[[Array, Array, Array], Array]
-
-
-@dataclass(frozen=True, kw_only=True, eq=False)
-class VectorStep:
-    """A step from ``t`` to ``t + h``: q, q̇ (p,) at its beginning, accelerations (n, p)."""
-
-    t: float
-    h: float
-    q: Array
-    speed: Array
-    accelerations: Array
-
-    @property
-    def start(self) -> tuple[Array, Array]:
-        """The state at its beginning."""
-        return self.q, self.speed
-
-    @cached_property
-    def _coefficients(self) -> Array:
-        """Of the place beyond that at constant speed, the gained speed, the acceleration."""
-        found = np.zeros((POINTS + 2, 3, len(self.q)))
-        found[:, 0] = self.h**2 * (PLACE @ self.accelerations)
-        found[:-1, 1] = self.h * (SPEED @ self.accelerations)
-        found[:-2, 2] = FIT @ self.accelerations
-        return found
-
-    def at(self, t: Array) -> tuple[Array, Array, Array]:
-        """q, q̇ and q̈ at times (B,) within the step, (B, p) each."""
-        x = 2.0 * (np.asarray(t) - self.t) / self.h - 1.0
-        powers = legendre.legvander(x, POINTS + 1)
-        moved, gained, bend = np.einsum("bm,mkp->kbp", powers, self._coefficients)
-        place: Array = self.q + 0.5 * (x + 1.0)[:, None] * self.h * self.speed + moved
-        return place, self.speed + gained, bend
-
-
-def try_vector_step(
-    acceleration: Acceleration, t: float, q: Array, speed: Array, h: float
-) -> tuple[VectorStep | None, float]:
-    """A step of the length ``h``, ``None`` if it does not succeed, and the length to try next.
-
-    All numbers must be of one size: radians, and lengths in longest links.
-    """
-    times = t + h * C
-    a = np.repeat(acceleration(q[None], speed[None], np.array([t])), POINTS, axis=0)
-    if not np.isfinite(a).all():
-        return None, _VECTOR_COLLOCATION_SMALLEST * h
-    inverse, noise = None, 0.0
-    for round_ in range(_MOST_ROUNDS):
-        w = speed + h * (AT_SPEED @ a)
-        place = q + h * C[:, None] * speed + h**2 * (AT_PLACE @ a)  # eq. (97)
-        if inverse is None or round_ == _MOST_ROUNDS // 2:
-            found, jacobian, steepest = _vector_collocation_linearise(
-                acceleration, place, w, times, h
-            )
-            if not np.isfinite(jacobian).all():
-                return None, _VECTOR_COLLOCATION_SMALLEST * h
-            inverse = np.linalg.inv(jacobian)
-            noise = NOISE * EPSILON * (1.0 + np.abs(place).max()) * steepest
-        else:
-            found = acceleration(place, w, times)
-        if not np.isfinite(found).all():
-            return None, _VECTOR_COLLOCATION_SMALLEST * h
-        change = (inverse @ (found - a).ravel()).reshape(a.shape)
-        a = a + change
-        if not np.isfinite(a).all():
-            return None, _VECTOR_COLLOCATION_SMALLEST * h
-        size = np.abs(a).max() + np.abs(speed).max() / abs(h)
-        if np.abs(change).max() <= max(_VECTOR_COLLOCATION_SETTLED * POINTS * size, noise):
-            break
-    else:
-        if np.abs(change).max() > max(_UNSETTLED * size, noise):
-            return None, 0.5 * h
-    tail, largest = float(np.abs((FIT @ a)[-2:]).max()), float(np.abs(a).max())
-    scale = max(float(np.abs(speed).max()), abs(h) * largest)
-    error = abs(h) * tail / scale if scale > 0.0 else 0.0
-    factor = _VECTOR_COLLOCATION_LARGEST
-    if error > 0.0:
-        factor = min(
-            _VECTOR_COLLOCATION_LARGEST,
-            _VECTOR_COLLOCATION_SAFETY * (_TOLERANCE / error) ** (1.0 / POINTS),
-        )
-    # accelerations follow places to rounding, which a shorter step does not reduce
-    if error > 30.0 * _TOLERANCE and tail > noise:
-        return None, max(_VECTOR_COLLOCATION_SMALLEST, min(factor, 0.7)) * h
-    factor = max(factor, _VECTOR_COLLOCATION_GROWTH) if tail <= noise else factor
-    step = VectorStep(t=t, h=h, q=q, speed=speed, accelerations=a)
-    return step, max(factor, _VECTOR_COLLOCATION_SMALLEST) * h
-
-
-def _vector_collocation_linearise(
-    acceleration: Acceleration, place: Array, w: Array, times: Array, h: float
-) -> tuple[Array, Array, float]:
-    """Accelerations at all points, the Jacobian of the collocation equations, (np, np), and the
-    largest derivative by a place.
-    """
-    count, p = place.shape
-    eps = math.sqrt(EPSILON)
-    # places are radians and longest links
-    ds = eps * max(float(np.abs(h * w).max()), 1.0)
-    dw = eps * max(float(np.abs(w).max()), abs(ds / h))
-    one = np.eye(p)
-    places = [place] + [place + ds * each for each in one] + [place] * p
-    speeds = [w] * (p + 1) + [w + dw * each for each in one]
-    many = acceleration(
-        np.concatenate(places), np.concatenate(speeds), np.tile(times, 2 * p + 1)
-    ).reshape(2 * p + 1, count, p)
-    # (n, p, p): which acceleration, by which number
-    by_place = np.moveaxis(many[1 : p + 1] - many[0], 0, -1) / ds
-    by_speed = np.moveaxis(many[p + 1 :] - many[0], 0, -1) / dw
-    jacobian = (
-        np.eye(count * p).reshape(count, p, count, p)
-        - np.einsum("iab,ij->iajb", by_place, h**2 * AT_PLACE)
-        - np.einsum("iab,ij->iajb", by_speed, h * AT_SPEED)
-    )
-    return many[0], jacobian.reshape(count * p, count * p), float(np.abs(by_place).max())
-
-
-# ----------------------------------------------------------------------
 # Functions along a leg as Chebyshev polynomials on panels, refined until they are resolved.
 
 
 _NODES = 24
 _TAIL = 3  # coefficients that show whether a function is resolved
 _RESOLVED = 2e-14  # of the size on the leg
-_PANELS_ROUNDING = (
-    1e-10  # of the size: coefficients below that do not fall with the panel are rounding
-)
+_FALLS = 1e-10  # of the size: coefficients below that do not fall with the panel are rounding
 _FARTHEST = 100.0  # half panels: polynomials have no meaning there
 _DEEPEST = 20  # halvings of a panel: what is then not resolved is rounding
 
@@ -412,7 +282,7 @@ def fit_panels(
         size = np.array([largest[groups == own].max() for own in groups])
         coefficients = np.einsum("mn,pnk->pmk", fit, values)
         tails = np.abs(coefficients[:, -_TAIL:]).max(axis=1)
-        noise = (tails < _PANELS_ROUNDING * size) & (tails > 0.1 * before)
+        noise = (tails < _FALLS * size) & (tails > 0.1 * before)
         rough = ((tails > _RESOLVED * size) & ~noise).any(axis=1) & (depth < deepest)
         parts: list[tuple[float, float]] = []
         for (a, b), own, split in zip(waiting, coefficients, rough, strict=True):

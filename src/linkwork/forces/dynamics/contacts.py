@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -11,11 +11,11 @@ from linkwork.core.expression.derivatives import Jet
 from linkwork.core.expression.grammar import CONSTANTS
 from linkwork.core.foundation.arrays import Array, solutions
 from linkwork.core.foundation.rounding import EPSILON
-from linkwork.core.foundation.statuses import Certification
-from linkwork.core.foundation.units import force_of_inertia
-from linkwork.core.mechanism.loaded import LoadedBodies
+from linkwork.core.foundation.statuses import Certification, Status
 from linkwork.core.mechanism.part.springs import Load
 from linkwork.core.motion.model import Model
+from linkwork.core.motion.rows_between import motion_of_rows
+from linkwork.core.numerics.system import SolvedRows
 from linkwork.core.results.motion import Motion
 from linkwork.forces.dynamics.events import Bound
 from linkwork.forces.dynamics.input_dynamics import InputDynamics
@@ -36,17 +36,41 @@ _KEPT = {
 _CUTS, _ROUNDS = 16, 12  # of the time in which a contact lifts off: to rounding
 
 
-def with_flywheels(model: Model, motion: Motion) -> Motion:
-    """The motion with the energy of the inertia on its inputs."""
-    own = model.description
-    assert isinstance(own, LoadedBodies)
-    unit = force_of_inertia(own.mass, own.length, own.force)
+@dataclass(frozen=True, kw_only=True, eq=False)
+class SimulatedRows:
+    """The K rows of a simulation, which of them were ``added`` to those asked for, and what its S
+    stops give: ``pushes`` and ``impulses`` (K, S).
+    """
+
+    rows: SolvedRows
+    added: Sequence[bool]
+    pushes: Array
+    impulses: Array
+
+
+def finished_motion(
+    reduction: Reduction, found: SimulatedRows, bounds: Sequence[Bound], missing: Array, told: str
+) -> Motion:
+    """The motion of simulated rows, and of the times (B,) that are ``missing`` behind them."""
+    rows = found.rows
+    if len(missing):
+        blank = SolvedRows.blank(missing[:, None], rows.v.shape[1], Status.OUT_OF_REACH)
+        rows = SolvedRows.concatenate([rows, blank])
+    added = np.array([*found.added, *[False] * len(missing)])
+    motion = motion_of_rows(reduction.named, rows, told, added)
+    tables: list[dict[str, Array]] = [{}, {}]
+    for table, parts in zip(tables, (found.pushes, found.impulses), strict=True):
+        for bound, part in zip(bounds, parts.T, strict=True):
+            given = np.append(bound.side * part, np.full(len(missing), np.nan))
+            table[bound.asked.name] = table.get(bound.asked.name, 0.0) + given
+    motion = replace(motion, stop_forces=tables[0], stop_impulses=tables[1])
     energy = np.zeros(len(motion))
-    for which in own.inputs:
-        if which.inertia is not None:
-            inertia = own.numbers(which.inertia) * unit
+    for which, inertia in zip(reduction.description.inputs, reduction.inertias, strict=True):
+        if inertia:
             energy += 0.5 * inertia * motion[f"{which.column}.velocity"] ** 2
-    return replace(motion, flywheel_energy=energy) if energy.any() else motion
+    if energy.any():
+        motion = replace(motion, flywheel_energy=energy)
+    return _with_energy_watched(motion, reduction)
 
 
 def with_contacts(
@@ -232,7 +256,7 @@ _DRIFTS = 1e-9  # of the largest kinetic energy
 _ROUNDING = 64.0 * EPSILON  # of the largest energy
 
 
-def watch_energy(motion: Motion, reduction: Reduction) -> Motion:
+def _with_energy_watched(motion: Motion, reduction: Reduction) -> Motion:
     """The motion; where its energy drifts, it says so and is not certified from there.
 
     Shocks at stops may take energy, so that it is compared between two of them.
@@ -275,7 +299,7 @@ def _is_conservative(reduction: Reduction) -> bool:
         part.turns_with is not None if isinstance(part, Load) else part.damping != 0
         for part in reduction.acting
     )
-    return not (driven or laws or varying or lossy or reduction.rubs or reduction.forcing)
+    return not (driven or laws or varying or lossy or reduction.rubs)
 
 
 def _energies(motion: Motion, reduction: Reduction) -> tuple[Array, Array]:
@@ -293,10 +317,9 @@ def _energies(motion: Motion, reduction: Reduction) -> tuple[Array, Array]:
         if motor is not None:
             stored = stored - motor.torque(0.0 * jet.v) * jet.v
     pushed = AppliedLoads(geometry, 1.0)
-    for load in (part for part in reduction.acting if isinstance(part, Load)):
-        apply_load(load, pushed)
-    for point, force, _ in pushed.forces:
-        stored = stored - (force.conj() * geometry.place(point).v).real
-    for link, torque in pushed.torques:
-        stored = stored - torque * geometry.angle(link).v
+    for part in reduction.acting:
+        if isinstance(part, Load):
+            apply_load(part, pushed)
+    for load, moved in pushed.moving(geometry):
+        stored = stored - (np.conj(load) * moved.v).real
     return kinetic, stored

@@ -21,6 +21,7 @@ from linkwork.core.foundation.statuses import CONVERGED, Certification, ChangePo
 from linkwork.core.foundation.units import FULL_TURN
 from linkwork.core.motion.following import Drive
 from linkwork.core.motion.model import Model
+from linkwork.core.motion.positions import unproved
 from linkwork.core.numerics.block_solver import BlockSolver
 from linkwork.core.numerics.branch_tracking import Track, rows_on_track
 from linkwork.core.numerics.curve_tracing import Leg as TracedLeg
@@ -92,27 +93,30 @@ class Turn:
         fine &= (np.abs(solved.v - guess) / solver.variable_scale).max(axis=1) < _OFF
         pick = fine[:, None]
         v = np.where(pick, solved.v, guess)
-        count = len(values)
-        code = np.full(count, Certification.NOT_ASKED.code, dtype=np.int8)
-        radius = unique = np.full(count, np.nan)
-        if certify and all(block.system.has_curvature_bound for block in solver.blocks):
-            proof = prove(solver, v, 4.0 * EPSILON * np.abs(v[:, -1:]))
-            proved = Certification.BRANCH_CHOSEN.code
-            code = np.where(proof.holds, proved, Certification.POSITION_NOT_PROVED.code)
-            radius = np.where(proof.holds, proof.radius, np.nan)
-            unique = np.where(proof.holds, proof.least_uniqueness_radius, np.nan)
-        return SolvedRows(
+        rows = rates.with_columns(
             v=v,
             first=np.where(pick, rates.first, first),
             second=np.where(pick, rates.second, second),
-            status=np.full(count, CONVERGED, dtype=np.int8),
+            status=np.full(len(v), CONVERGED, dtype=np.int8),
             residual=solver.residual(v),
-            iterations=solved.iterations.copy(),
-            condition=rates.condition.copy(),
-            certification=code.astype(np.int8),
-            radius=radius,
-            uniqueness_radius=unique,
+            iterations=solved.iterations,
         )
+        if not (certify and solver.is_provable):
+            return unproved(rows, Certification.NOT_ASKED)
+        return with_proofs(solver, rows, v[:, -1:], Certification.BRANCH_CHOSEN)
+
+
+def with_proofs(
+    solver: BlockSolver, rows: SolvedRows, inputs: Array, standing: Certification
+) -> SolvedRows:
+    """Rows with proofs for rounded ``inputs`` (B, p), and with a ``standing`` where these hold."""
+    proof = prove(solver, rows.v, 4.0 * EPSILON * np.abs(inputs))
+    code = np.where(proof.holds, standing.code, Certification.POSITION_NOT_PROVED.code)
+    return rows.with_columns(
+        certification=code.astype(np.int8),
+        radius=np.where(proof.holds, proof.radius, np.nan),
+        uniqueness_radius=np.where(proof.holds, proof.least_uniqueness_radius, np.nan),
+    )
 
 
 def turn_of(leads: Parametrizations, solver: BlockSolver, start: Array) -> Turn | None:
@@ -279,22 +283,13 @@ def _leg(leg: TracedLeg, way: TracedCurve) -> Leg:
 
     def rows(values: Array, certify: bool) -> SolvedRows:
         found = rows_on_track(led.solver, led.path, track, values)
-        columns = {name: led.whole(getattr(found, name)) for name in ("v", "first", "second")}
         if certify and led.provable:
-            proof = prove(led.solver, found.v, 4.0 * EPSILON * np.abs(found.v[:, -1:]))
             standing = Certification.CERTIFIED if way.certified else Certification.MOTION_NOT_PROVED
-            code = np.where(
-                proof.holds, standing.code, Certification.POSITION_NOT_PROVED.code
-            ).astype(np.int8)
-            radius = np.where(proof.holds, proof.radius, np.nan)
-            unique = np.where(proof.holds, proof.least_uniqueness_radius, np.nan)
+            found = with_proofs(led.solver, found, found.v[:, -1:], standing)
         else:
-            why = Certification.NO_BOUND if certify else Certification.NOT_ASKED
-            code = np.full(len(values), why.code, dtype=np.int8)
-            radius = unique = np.full(len(values), np.nan)
-        return found.with_columns(
-            **columns, certification=code, radius=radius, uniqueness_radius=unique
-        )
+            found = unproved(found, Certification.NO_BOUND if certify else Certification.NOT_ASKED)
+        columns = {name: led.whole(getattr(found, name)) for name in ("v", "first", "second")}
+        return found.with_columns(**columns)
 
     return Leg(lead=led.lead, begin=nodes[0].t, end=nodes[-1].t, rows=rows)
 
@@ -308,15 +303,12 @@ def _without_unknowns(model: Model, drive: Drive, start: Array) -> PositionCurve
     def rows(values: Array, certify: bool) -> SolvedRows:
         v = np.asarray(values, dtype=float)[:, None]
         count, proved = len(v), Certification.CERTIFIED if certify else Certification.NOT_ASKED
-        return SolvedRows(
-            v=v.copy(),
+        return SolvedRows.blank(v, 1, Status.CONVERGED, proved).with_columns(
+            v=v,
             first=np.ones_like(v),
             second=np.zeros_like(v),
-            status=np.full(count, Status.CONVERGED.code, dtype=np.int8),
             residual=np.zeros(count),
-            iterations=np.zeros(count, dtype=np.int64),
             condition=np.ones(count),
-            certification=np.full(count, proved.code, dtype=np.int8),
             radius=np.zeros(count),
             uniqueness_radius=np.full(count, np.inf),
         )

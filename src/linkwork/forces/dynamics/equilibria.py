@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping
 from itertools import islice, pairwise, product
 
 import numpy as np
@@ -16,7 +16,6 @@ from linkwork.core.motion.higher_rates import model_in_time
 from linkwork.core.motion.model import Model
 from linkwork.core.motion.solving import solve
 from linkwork.core.results.quantity import Kind
-from linkwork.forces.dynamics.events import Bound
 from linkwork.forces.dynamics.input_dynamics import InputDynamics
 from linkwork.forces.dynamics.reduced_leg import ReducedLeg
 from linkwork.forces.dynamics.reduction import Reduction
@@ -35,7 +34,7 @@ _STARTS, _LARGEST_GRID = 5, 125  # for each input, fewer if all together were mo
 _MOST_STARTS = 250  # lengths have one more each; two of each of many inputs would be too many
 _STRIDE = 0.25  # radians, or longest links: the longest step to a start
 _LONGEST = 0.3  # of Newton's method
-_INPUT_EQUILIBRIA_ROUNDS = 60
+_NEWTON_STEPS = 60
 _SETTLED = 1e-12
 _DIFFERENCE = 1e-3  # of fourth order: its error is that of rounding
 _SAME_POSITION = 1e-7
@@ -67,13 +66,15 @@ def input_equilibria(
             continue
         v, slope = settled
         place = _folded(model, v)
-        if not _input_equilibria_inside(dynamics, place, bounds):
+        still = np.zeros((1, len(place)))
+        solved = dynamics.reduction.geometry(place[None], still, still, np.zeros(1)).solved
+        if any(bound.inside(solved)[0] < 0.0 for bound in bounds):
             continue
         if not any(_is_same(model, dynamics, place, other, slope) for other, *_ in found):
             found.append((place, v, slope))
     lead = dynamics.solver.unknowns
     found.sort(key=lambda each: tuple(np.round(each[0][lead:], 6)))
-    return tuple(_input_equilibria_equilibrium(model, place, slope) for place, _, slope in found)
+    return tuple(_with_modes(model, place, slope) for place, _, slope in found)
 
 
 def _grid(model: Model, dynamics: InputDynamics) -> Iterator[Array]:
@@ -104,7 +105,7 @@ def _walk(dynamics: InputDynamics, target: Array) -> None:
 
 def _settle(dynamics: InputDynamics) -> tuple[Array, Array] | None:
     """The equilibrium to which Newton's method leads: variables (N,), ∂q̈/∂q (f, f)."""
-    for _ in range(_INPUT_EQUILIBRIA_ROUNDS):
+    for _ in range(_NEWTON_STEPS):
         bend, slope = _linearised(dynamics)
         if not (np.isfinite(bend).all() and np.isfinite(slope).all()):
             return None
@@ -136,36 +137,36 @@ def _linearised(dynamics: InputDynamics) -> tuple[Array, Array]:
     return found[0], slope.T
 
 
-def _input_equilibria_equilibrium(model: Model, v: Array, slope: Array) -> Equilibrium:
+def _with_modes(model: Model, v: Array, slope: Array) -> Equilibrium:
+    """The equilibrium of several inputs at variables (N,), by ∂q̈/∂q (f, f)."""
     # eq. (171)
     squares = np.linalg.eigvals(-slope).astype(complex)
     squares[np.abs(squares) <= _FLAT * max(1.0, float(np.abs(squares).max()))] = 0.0
     growth = np.abs(np.sqrt(-squares).real)
     oscillates = (squares.real > 0.0) & (growth <= 1e-6 * np.sqrt(np.abs(squares)))
     rates = np.where(oscillates, np.sqrt(squares).real, -growth) / FULL_TURN
+    rank = int(np.linalg.matrix_rank(_stiff_inverse(slope)))
+    indifferent = "" if rank == len(slope) else "near" if rank else "everywhere"
+    stable = bool(oscillates.all()) and not indifferent
+    return _equilibrium(model, v, tuple(map(float, np.sort(rates) + 0.0)), stable, indifferent)
+
+
+def _equilibrium(
+    model: Model, v: Array, frequencies: tuple[float, ...], stable: bool, indifferent: str
+) -> Equilibrium:
+    """The equilibrium at variables (N,) in file units."""
     values = {
         variable.name: float(value) / model.units.scale(Kind(variable.kind))
         for variable, value in zip(model.equations.variables, v, strict=True)
     }
-    rates = np.sort(rates) + 0.0
-    rank = int(np.linalg.matrix_rank(_stiff_inverse(slope)))
-    indifferent = "" if rank == len(slope) else "near" if rank else "everywhere"
     return Equilibrium(
         input=values[model.equations.inputs[0].name],
         values=values,
-        stable=bool(oscillates.all()) and not indifferent,
-        frequency=float(rates[0]),
-        frequencies=tuple(map(float, rates)),
+        stable=stable,
+        frequency=frequencies[0],
+        frequencies=frequencies,
         indifferent=indifferent,
     )
-
-
-def _input_equilibria_inside(dynamics: InputDynamics, v: Array, bounds: Sequence[Bound]) -> bool:
-    """Whether no stop is in the way."""
-    still = np.zeros((1, len(v)))
-    solved = dynamics.reduction.geometry(v[None], still, still, np.zeros(1)).solved
-    values = [(bound, np.atleast_1d(bound.asked.values(solved, 1.0))[0]) for bound in bounds]
-    return all(bound.side * (value - bound.value) >= 0.0 for bound, value in values)
 
 
 def _folded(model: Model, v: Array) -> Array:
@@ -198,7 +199,7 @@ def _is_same(model: Model, dynamics: InputDynamics, one: Array, other: Array, sl
 
 
 _LOOKS = 256  # places of a panel at which the sign of the net force is compared
-_EQUILIBRIA_ROUNDS = 12
+_CUTS = 12
 _SLOPE = 1e-3  # of a panel: differences of fourth order for the stiffness
 _SAME_PLACE = 1e-9  # of a turn, or of the longest link
 _BALANCED = 1e-9  # of the largest net force: a zero, not a jump of a comparison
@@ -222,7 +223,7 @@ def equilibria(
     Raises
     ------
     InputError
-        As :func:`linkwork.forces.dynamics.simulate`.
+        As :func:`linkwork.forces.dynamics.simulation.simulate`.
     """
     policy = straight_or_stop(change_points)
     check_loaded(model)
@@ -237,7 +238,7 @@ def equilibria(
         ends == [tuple(leg.table.edges[[0, -1]])] for leg, ends in zip(legs, zeros, strict=True)
     ):
         none = np.zeros(legs[0].variables)
-        return (_equilibria_equilibrium(legs[curve.home], curve.value, none, "everywhere"),)
+        return (_with_frequency(legs[curve.home], curve.value, none, "everywhere"),)
     last: list[Equilibrium] = []  # of the last stretch, if it reaches the end of its leg
     for leg, ends in zip(legs, zeros, strict=True):
         backwards, is_home = leg.leg.begin > leg.leg.end, leg is legs[curve.home]
@@ -254,9 +255,10 @@ def equilibria(
             # from the start a place may be reached forwards or backwards
             laps = (0, -1, 1) if curve.closed and bounds else (0,)
             gains = [lap * curve.gain for lap in laps]
-            gain = next((gain for gain in gains if _equilibria_inside(leg, s, gain, bounds)), None)
+            free = (g for g in gains if not any(b.is_beyond(leg, s, 0.0, g) for b in bounds))
+            gain = next(free, None)
             if gain is not None:
-                found.append(_equilibria_equilibrium(leg, s, gain, "near" if high > low else ""))
+                found.append(_with_frequency(leg, s, gain, "near" if high > low else ""))
                 if high > low and end in (low, high):
                     last = found[-1:]
     kept: list[Equilibrium] = []
@@ -277,8 +279,7 @@ def _load_size(leg: ReducedLeg, s: Array) -> float:
     state = leg.state(s, still, still, np.zeros(leg.variables))
     applied, weights = leg.reduction.loaded(state.moving), AppliedLoads(state.displaced, 1.0)
     weights.weigh(leg.reduction.description)
-    sizes = [np.abs(force * state.displaced.place(at).d1) for at, force, _ in applied.forces]
-    sizes += [np.abs(own * state.displaced.angle(link).d1) for link, own in applied.torques]
+    sizes = [np.abs(load * moved.d1) for load, moved in applied.moving(state.displaced)]
     sizes += [np.abs(body.weight_rate) for body in weights.masses]
     return float(np.max(sum(sizes, still)))
 
@@ -304,7 +305,7 @@ def _zeros(leg: ReducedLeg) -> Iterator[tuple[float, float]]:
     changes = (force[:-1] > 0.0) != (force[1:] > 0.0)
     for k in np.flatnonzero(changes & ~flat[:-1] & ~flat[1:]).tolist():
         low, high, side = float(looks[k]), float(looks[k + 1]), bool(force[k] > 0.0)
-        for _ in range(_EQUILIBRIA_ROUNDS):
+        for _ in range(_CUTS):
             inside = np.linspace(low, high, 17)
             over = _force(leg, inside) > 0.0
             over[[0, -1]] = side, not side  # near zero a sign may change with its last bit
@@ -317,15 +318,8 @@ def _zeros(leg: ReducedLeg) -> Iterator[tuple[float, float]]:
             yield s, s
 
 
-def _equilibria_inside(leg: ReducedLeg, s: float, gain: Array, bounds: Sequence[Bound]) -> bool:
-    """Whether no stop is in the way."""
-    return not any(bound.is_beyond(leg, s, 0.0, gain) for bound in bounds)
-
-
-def _equilibria_equilibrium(
-    leg: ReducedLeg, s: float, gain: Array, indifferent: str = ""
-) -> Equilibrium:
-    model = leg.reduction.model
+def _with_frequency(leg: ReducedLeg, s: float, gain: Array, indifferent: str) -> Equilibrium:
+    """The equilibrium of one input at a place of its leg."""
     panel = int(leg.table.locate(np.array([s]))[0][0])
     step = _SLOPE * float(leg.table.edges[panel + 1] - leg.table.edges[panel])
     down, far_down, up, far_up = _force(leg, s + step * np.array([-1.0, -2.0, 1.0, 2.0]))
@@ -336,15 +330,7 @@ def _equilibria_equilibrium(
     if indifferent:
         stiffness = frequency = 0.0
     v = leg.leg.rows(np.array([s]), False).v[0] + gain
-    names = model.equations.variables
-    values = {
-        variable.name: float(value) / model.units.scale(Kind(variable.kind))
-        for variable, value in zip(names, v, strict=True)
-    }
-    return Equilibrium(
-        input=values[names[-1].name], values=values, stable=stiffness > 0.0, frequency=frequency,
-        frequencies=(frequency,), indifferent=indifferent,
-    )  # fmt: skip
+    return _equilibrium(leg.reduction.model, v, (frequency,), stiffness > 0.0, indifferent)
 
 
 def _same(model: Model, one: Equilibrium, other: Equilibrium) -> bool:

@@ -5,13 +5,15 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from typing import Protocol, TypeVar
+from typing import TypeVar
 
 import numpy as np
 
 from linkwork.core.foundation.arrays import Array
+from linkwork.core.foundation.errors import InputError, KeyWords
 from linkwork.core.foundation.rounding import EPSILON
-from linkwork.core.results.quantities.definition import Asked
+from linkwork.core.results.quantities.definition import Asked, Solved
+from linkwork.forces.dynamics.collocation import Step
 from linkwork.forces.dynamics.joint_friction import Rubbing
 from linkwork.forces.dynamics.reduced_leg import ReducedLeg
 
@@ -109,11 +111,21 @@ class Bound:
     side: float
     restitution: float
 
-    def margin(self, leg: ReducedLeg, s: Array, speed: Array, t: Array, gain: Array) -> Array:
+    def inside(self, solved: Solved) -> Array:
         """How far the quantity is inside, (B,)."""
-        solved = leg.state(s, speed, t, gain).moving.solved
         found: Array = self.side * (np.atleast_1d(self.asked.values(solved, 1.0)) - self.value)
         return found
+
+    def margin(self, leg: ReducedLeg, s: Array, speed: Array, t: Array, gain: Array) -> Array:
+        """The same in states on a leg."""
+        return self.inside(leg.state(s, speed, t, gain).moving.solved)
+
+    def passed_at_start(self, margin: float, place: KeyWords) -> InputError:
+        """The error of a motion that begins beyond the stop."""
+        return InputError(
+            f"{self.asked.name} begins at {self.value + self.side * margin:.6g}, beyond its stop "
+            f"at {self.value:g}: {place(self.key)}"
+        )
 
     def slope(self, leg: ReducedLeg, s: float, t: float, gain: Array) -> float:
         """The derivative of the margin by the leader, in radians or lengths."""
@@ -134,7 +146,7 @@ class Bound:
     def way_off(self, leg: ReducedLeg, s: float, t: float, gain: Array) -> float:
         """The same where the stop is touched, to rounding; 0 where it is not."""
         margin, slope = self._near(leg, s, t, gain)
-        return math.copysign(1.0, slope) if margin <= self._rounding(slope) else 0.0
+        return math.copysign(1.0, slope) if margin <= self.rounding(slope) else 0.0
 
     def is_passed(self, leg: ReducedLeg, s: float, speed: float, t: float, gain: Array) -> bool:
         """Whether a motion is at the stop or behind it, and moves outwards."""
@@ -145,9 +157,10 @@ class Bound:
     def is_beyond(self, leg: ReducedLeg, s: float, t: float, gain: Array) -> bool:
         """Whether the margin is negative by more than rounding."""
         margin, slope = self._near(leg, s, t, gain)
-        return margin < -self._rounding(slope)
+        return margin < -self.rounding(slope)
 
-    def _rounding(self, slope: float) -> float:
+    def rounding(self, slope: float) -> float:
+        """Up to which margin the stop is touched, by the slope of the margin."""
         return _TOUCHES * abs(slope) + 8.0 * EPSILON * abs(self.value)
 
     def flight(self, leg: ReducedLeg, speed: float, pull: float, until: float) -> float:
@@ -178,25 +191,6 @@ class Event:
 Margins = Callable[[Array, Array, Array], Array]
 
 
-class Between(Protocol):
-    """A step of one number or several, with the states between its ends."""
-
-    @property
-    def t(self) -> float:
-        """Its beginning."""
-
-    @property
-    def h(self) -> float:
-        """Its length."""
-
-    @property
-    def start(self) -> tuple[float, float] | tuple[Array, Array]:
-        """The state at its beginning."""
-
-    def at(self, t: Array) -> tuple[Array, Array, Array]:
-        """States and accelerations at times (B,)."""
-
-
 def margins_on(
     leg: ReducedLeg, bounds: Sequence[Bound], rubbing: Rubbing | None, gain: Array
 ) -> Margins:
@@ -218,7 +212,7 @@ def margins_on(
     return margins
 
 
-def first_event(step: Between, end: float, margins: Margins, comparisons: int) -> Event | None:
+def first_event(step: Step, end: float, margins: Margins, comparisons: int) -> Event | None:
     """The first sign change of margins (B, K) on a step up to the time ``end``.
 
     All but the last ``comparisons`` margins count only where they become negative.
@@ -226,7 +220,7 @@ def first_event(step: Between, end: float, margins: Margins, comparisons: int) -
     times = np.linspace(step.t, end, _LOOKS + 1)
     s, speed, _ = step.at(times)
     # the polynomials meet their beginning only to rounding, which must hide no switch at rest
-    s[0], speed[0] = step.start
+    s[0], speed[0] = step.s, step.speed
     values = margins(s, speed, times)
     falling = np.arange(values.shape[1]) < values.shape[1] - comparisons
     changes = (values[1:] > 0.0) != (values[:-1] > 0.0)
@@ -256,7 +250,7 @@ def just_behind(place: _T, speed: _T, acceleration: _T, size: _T) -> tuple[_T, _
 
 
 def _located(
-    step: Between, margins: Margins, number: int, times: Array, values: Array
+    step: Step, margins: Margins, number: int, times: Array, values: Array
 ) -> tuple[float, float]:
     """Just before and just after the sign change between two times."""
     (low, high), (below, above) = times.tolist(), values.tolist()

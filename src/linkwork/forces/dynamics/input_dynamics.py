@@ -10,11 +10,12 @@ import numpy as np
 from linkwork.core.equations.input_motion import law_motions
 from linkwork.core.foundation.arrays import Array, BoolArray, ComplexArray, IndexArray, solutions
 from linkwork.core.foundation.errors import InputError
-from linkwork.core.foundation.statuses import CONVERGED, Certification
+from linkwork.core.foundation.statuses import CONVERGED, Certification, Status
 from linkwork.core.motion.model import Model
 from linkwork.core.numerics.position_proof import prove
 from linkwork.core.numerics.system import SolvedRows
 from linkwork.core.table.rows import Piecewise
+from linkwork.forces.dynamics.curve import with_proofs
 from linkwork.forces.dynamics.reduction import Reduction
 from linkwork.forces.reactions.applied import AppliedLoads
 from linkwork.forces.reactions.drives import efforts
@@ -179,24 +180,17 @@ class InputDynamics:
         v, found = self.positions(q[None], np.array([t]))
         if not found[0]:
             return False
-        if self._has_bound and not prove(self.solver, v, np.zeros((1, len(self.size)))).holds[0]:
+        still = np.zeros((1, len(self.size)))
+        if self.solver.is_provable and not prove(self.solver, v, still).holds[0]:
             return False
         self._at, self._slopes, self._signs = self._anchor(v[0])
         return True
-
-    @property
-    def _has_bound(self) -> bool:
-        return all(block.system.has_curvature_bound for block in self.solver.blocks)
 
     def positions(self, q: Array, t: Array) -> tuple[Array, BoolArray]:
         """Positions (B, N) at free inputs (B, f) and times (B,), and which of them were found on
         the same branch.
         """
-        return self.positions_of(self.inputs.complete(q, t, 0))
-
-    def positions_of(self, inputs: Array) -> tuple[Array, BoolArray]:
-        """The same at all inputs (B, p)."""
-        own = inputs * self.size
+        own = self.inputs.complete(q, t, 0) * self.size
         guess = self._at + (own - self._at[self.solver.unknowns :]) @ self._slopes.T
         guess[:, self.solver.unknowns :] = own
         finite = np.isfinite(guess).all(axis=1)
@@ -308,32 +302,25 @@ class InputDynamics:
         v, q, speed, bend, t = (x[:count] for x in (v, q, speed, bend, t))
         whole, bent = self.inputs.complete(speed, t, 1), self.inputs.complete(bend, t, 2)
         rates = self.solver.rates(v, whole * self.size, bent * self.size)
-        code = np.full(count, Certification.NOT_ASKED.code, dtype=np.int8)
-        radius = unique = np.full(count, np.nan)
-        if certify and not self._has_bound:
-            code[:] = Certification.NO_BOUND.code
-        elif certify and count:
-            proof = prove(self.solver, v, np.zeros((count, len(self.size))))
+        why = Certification.NOT_ASKED
+        if certify and not self.solver.is_provable:
+            why = Certification.NO_BOUND
+        rows = SolvedRows.blank(t[:, None], v.shape[1], Status.CONVERGED, why)
+        rows = rows.with_columns(
+            v=v,
+            residual=self.solver.residual(v),
+            condition=rates.condition,
+            branch=np.full(count, self.reduction.model.circuit, dtype=object),
+        )
+        if certify and count and self.solver.is_provable:
             # the motion between rows is followed by small steps, without proof; an open chain has
             # one position only
             closed = self.solver.unknowns > 0
-            proof_of = Certification.MOTION_NOT_PROVED if closed else Certification.CERTIFIED
-            proved = proof_of.code
-            code = np.where(proof.holds, proved, Certification.POSITION_NOT_PROVED.code)
-            radius = np.where(proof.holds, proof.radius, np.nan)
-            unique = np.where(proof.holds, proof.least_uniqueness_radius, np.nan)
+            standing = Certification.MOTION_NOT_PROVED if closed else Certification.CERTIFIED
+            rows = with_proofs(self.solver, rows, np.zeros((count, len(self.size))), standing)
         one = np.ones((count, 1))
-        return SolvedRows(
-            inputs=t[:, None].copy(),
+        return rows.with_columns(
             v=np.column_stack([v, t]),
             first=np.column_stack([rates.first, one]),
             second=np.column_stack([rates.second, 0.0 * one]),
-            status=np.full(count, CONVERGED, dtype=np.int8),
-            iterations=np.zeros(count, dtype=np.int64),
-            residual=self.solver.residual(v),
-            condition=rates.condition.copy(),
-            certification=code.astype(np.int8),
-            radius=radius,
-            uniqueness_radius=unique,
-            branch=np.full(count, self.reduction.model.circuit, dtype=object),
         )

@@ -8,7 +8,7 @@ the answers to unit loads are functions of the leader's place alone, and are tab
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
@@ -185,8 +185,7 @@ class JointFriction:
         taken = 0
         for size in self.sizes:
             if isinstance(size, Sided) and _varies(size):
-                plus, minus = varying[:, taken], varying[:, taken + 1]
-                size = Sided(unknowns=size.unknowns, plus=plus, minus=minus, constant=size.constant)
+                size = replace(size, plus=varying[:, taken], minus=varying[:, taken + 1])
                 taken += 2
             found.append(size)
         return found

@@ -17,7 +17,7 @@ from linkwork.forces.dynamics.collocation import Panels, fit_panels
 from linkwork.forces.dynamics.curve import Leg
 from linkwork.forces.dynamics.joint_friction import JointFriction, Rubbing
 from linkwork.forces.dynamics.reduction import FAR, NEAR, Reduction, State
-from linkwork.forces.reactions.applied import AppliedLoads
+from linkwork.forces.reactions.applied import AppliedLoads, virtual_work
 from linkwork.forces.reactions.geometry import Geometry
 
 _LOOKS, _POLE = 257, 1e6  # places at which formulas are tried; times their usual value
@@ -68,7 +68,7 @@ class ReducedLeg:
         )
 
     def _repeats(self, low: float, high: float, gain: Array) -> bool:
-        if not gain.any() or not self.reduction.pushed:
+        if not gain.any() or not self.reduction.acting:
             return True
         rows = self._solved(np.linspace(low, high, _LOOKS))
         displaced = self.reduction.geometry(rows.v, rows.first, rows.second, np.zeros(_LOOKS))
@@ -212,12 +212,10 @@ class ReducedLeg:
         if self.tabulates:
             return total, torque[:, None]
         amounts: list[Array] = []
-        if self.reduction.pushed:
+        if self.reduction.acting:
             state = self.state(s, speed, t, gain)
             applied = self.reduction.loaded(state.moving, self.spring_margins(s))
             total = self._work(applied, state.displaced)
-            for forcing in self.reduction.forcing:
-                total = total + forcing(state)
             for _, force, _ in applied.forces:
                 amounts += [force.real, force.imag]
             amounts += [own for _, own in applied.torques]
@@ -245,12 +243,8 @@ class ReducedLeg:
 
     def _work(self, applied: AppliedLoads, displaced: Geometry) -> Array:
         """Q of loads and springs, (B,)."""
-        total = np.zeros(displaced.rows)
-        for point, force, _ in applied.forces:
-            total = total + (force.conj() * displaced.place(point).d1).real
-        for link, torque in applied.torques:
-            total = total + torque * displaced.angle(link).d1
-        return total
+        works = (virtual_work(*pair) for pair in applied.moving(displaced))
+        return sum(works, np.zeros(displaced.rows))
 
     def margins(self, s: Array, speed: Array, t: Array, gain: Array) -> Array:
         """The margins of all comparisons, (B, comparisons)."""

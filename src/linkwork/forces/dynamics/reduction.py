@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Any
@@ -54,10 +54,6 @@ class State:
     displaced: Geometry
 
 
-#: A further generalised force along the leader at B states, such as friction, (B,).
-Forcing = Callable[[State], Array]
-
-
 class Reduction:
     """What is the same on all legs.
 
@@ -65,22 +61,14 @@ class Reduction:
     ----------
     model, named : Model
         The mechanism, and the same over time.
-    forcing : sequence of Forcing
-        Further forces.
     place : callable
         Words the key of a load for messages.
     """
 
-    def __init__(
-        self,
-        model: Model,
-        named: Model,
-        forcing: Sequence[Forcing] = (),
-        place: KeyWords = key_text,
-    ) -> None:
+    def __init__(self, model: Model, named: Model, place: KeyWords = key_text) -> None:
         description = model.description
         assert isinstance(description, LoadedBodies)
-        self.model, self.named, self.forcing = model, named, forcing
+        self.model, self.named = model, named
         self.description, self.place = description, place
         #: Of all inputs; the first one is that of a mechanism with one input.
         self.motors = motors_of(model)
@@ -133,12 +121,7 @@ class Reduction:
         damped = any(getattr(part, "damping", 0) != 0 for part in self.acting)
         switched = bool(self.comparisons)
         driven = self.motor is not None and not self.motor.constant
-        return not (timed or damped or switched or driven or self.forcing)
-
-    @property
-    def pushed(self) -> bool:
-        """Whether anything but weights and the motor acts."""
-        return bool(self.acting or self.forcing)
+        return not (timed or damped or switched or driven)
 
     @cached_property
     def inertias(self) -> Array:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, field
 from itertools import pairwise
 from typing import Any
@@ -144,51 +144,11 @@ def _first_positive(
     return high
 
 
-@dataclass(frozen=True, eq=False)
-class Support:
-    """The stops that a machine at rest touches: their numbers by the way that each blocks."""
-
-    bounds: Sequence[Bound]
-    touching: Mapping[float, int]
-
-    @property
-    def free(self) -> list[float]:
-        """The ways that no stop blocks."""
-        return [way for way in (1.0, -1.0) if way not in self.touching]
-
-    def pushes(
-        self, leg: ReducedLeg, s: float, times: Array, gain: Array
-    ) -> list[tuple[int, float]]:
-        """The number of the stop that pushes and its push at times (B,); -1 for none, NaN with
-        friction, which leaves it open.
-        """
-        if not self.touching:
-            return [(-1, 0.0)] * len(times)
-        here = np.full_like(times, s)
-        force = leg.acceleration(here, 0.0 * times, times, gain) * leg.numbers(here)[:, 0]
-        found = []
-        for one in force.tolist():
-            number = self.touching.get(math.copysign(1.0, one), -1)
-            push = 0.0 if number < 0 else -one / self.bounds[number].slope(leg, s, 0.0, gain)
-            found.append((number, math.nan if leg.reduction.rubs and number >= 0 else push))
-        return found
-
-    def holder(self, leg: ReducedLeg, s: float, t: float, gain: Array) -> str:
-        """What holds a machine that stays at rest; "" if nothing has to."""
-        ways = (1.0, -1.0)
-        pulls = excesses(leg, s, np.array([t]), gain, ways)[0]
-        for way, pull in zip(ways, pulls, strict=True):
-            if pull > 0.0 and way in self.touching:
-                return f"the stop of {self.bounds[self.touching[way]].asked.name}"
-        if leg.reduction.rubs:
-            return "friction"
-        return "a load that switches there" if leg.reduction.switch_count else ""
-
-
 # ----------------------------------------------------------------------
 # A motion under way along the curve of positions: its state, and what is known of it.
 
 
+_WAYS = (1.0, -1.0)
 _SAME_SPEED = 1e-11  # a lap that ends as fast as it began repeats itself
 
 
@@ -249,6 +209,38 @@ class Passage:
         here = (np.array([x]) for x in (self.s, self.speed, self.t))
         return float(self._acceleration(*here)[0])
 
+    @property
+    def _free(self) -> list[float]:
+        """The ways that no stop blocks."""
+        return [way for way in _WAYS if way not in self.touching]
+
+    def _pushes(self, times: Array) -> list[tuple[int, float]]:
+        """The number of the stop that pushes and its push at times (B,) at rest; -1 for none, NaN
+        with friction, which leaves it open.
+        """
+        if not self.touching:
+            return [(-1, 0.0)] * len(times)
+        here, still, leg = np.full_like(times, self.s), np.zeros_like(times), self.leg
+        force = leg.acceleration(here, still, times, self.gain) * leg.numbers(here)[:, 0]
+        found = []
+        for one in force.tolist():
+            number, push = self.touching.get(math.copysign(1.0, one), -1), 0.0
+            if number >= 0:
+                slope = self.bounds[number].slope(leg, self.s, 0.0, self.gain)
+                push = math.nan if self.reduction.rubs else -one / slope
+            found.append((number, push))
+        return found
+
+    def _holding(self) -> str:
+        """What holds a machine that stays at rest; "" if nothing has to."""
+        pulls = excesses(self.leg, self.s, np.array([self.t]), self.gain, _WAYS)[0]
+        for way, pull in zip(_WAYS, pulls, strict=True):
+            if pull > 0.0 and way in self.touching:
+                return f"the stop of {self.bounds[self.touching[way]].asked.name}"
+        if self.reduction.rubs:
+            return "friction"
+        return "a load that switches there" if self.reduction.switch_count else ""
+
     def _take(self, step: Step, end: float) -> None:
         times = self.times[self.taken :]
         times = times[(times > step.t) & (times <= end)]
@@ -280,6 +272,10 @@ class Passage:
                 event=event, **{"lost": self.lost, **more},
             )
         )  # fmt: skip
+
+    def record_end(self) -> None:
+        """Add the state in which the motion has ended early."""
+        self._record(self.t, self.s, self.speed, math.nan, "end")
 
     def _note_lap(self, ahead: bool) -> None:
         """Finish at once if a lap has ended as it began and all further ones are the same."""

@@ -12,17 +12,15 @@ from linkwork.core.foundation.arrays import Array
 from linkwork.core.foundation.errors import InputError, KeyWords
 from linkwork.core.foundation.names import canonical
 from linkwork.core.foundation.rounding import EPSILON
-from linkwork.core.foundation.statuses import ChangePointPolicy, Status
+from linkwork.core.foundation.statuses import ChangePointPolicy
 from linkwork.core.mechanism.dimensions import Number
 from linkwork.core.motion.higher_rates import model_in_time
 from linkwork.core.motion.model import Model
-from linkwork.core.motion.rows_between import motion_of_rows
 from linkwork.core.motion.solving import solve
 from linkwork.core.numerics.system import SolvedRows
 from linkwork.core.results.motion import Motion
-from linkwork.core.results.quantities.definition import Solved
-from linkwork.forces.dynamics.collocation import VectorStep, try_vector_step
-from linkwork.forces.dynamics.contacts import Contacts, watch_energy
+from linkwork.forces.dynamics.collocation import Step, try_step
+from linkwork.forces.dynamics.contacts import Contacts, SimulatedRows, finished_motion
 from linkwork.forces.dynamics.events import (
     BEHIND,
     Bound,
@@ -39,7 +37,6 @@ from linkwork.forces.dynamics.simulated import (
     check_masses_move,
     model_name,
     start_speeds,
-    with_stops,
 )
 from linkwork.forces.reactions.applied import AppliedLoads
 from linkwork.forces.reactions.geometry import Geometry
@@ -49,7 +46,6 @@ _FIRST = 1e-3  # of the whole time: the first step
 _DRIVEN = 1e-9  # of the normal: less of it is rounding
 _RESTS = 1e-8  # of the whole time: a shorter bounce is rest
 _LOW = 1e-12  # of a radian, or of the longest link: so is a lower one, whose margin is rounding
-_TOUCHES = 1e-9  # of the same: a stop so near at the start is touched
 _SINGULAR = 1e4  # condition beyond which a dead point of the inputs is what stops the motion
 
 
@@ -75,6 +71,7 @@ class InputTravel:
     ended: str = ""
     t: float = 0.0
     taken: int = 0
+    longest: float = np.inf  # step after a shock
 
     def __post_init__(self) -> None:
         self.until = float(self.times[-1])
@@ -97,8 +94,9 @@ class InputTravel:
             # the acceleration of a law jumps between its segments
             target = min(self.until, self.dynamics.inputs.next_break(self.t))
             short = target - self.t
-            step, following = try_vector_step(
-                self.contacts.acceleration, self.t, self.q, self.speed, min(h, short, self.longest)
+            length = min(h, short, self.longest)
+            step, following, _ = try_step(
+                self.contacts.acceleration, self.t, self.q, self.speed, length, unit=1.0
             )
             if step is None:
                 if following < _SHORTEST * self.until:
@@ -111,7 +109,7 @@ class InputTravel:
             if self.progress is not None:
                 self.progress(self.t / self.until)
 
-    def _advance(self, step: VectorStep, end: float) -> None:
+    def _advance(self, step: Step, end: float) -> None:
         event = None
         comparisons = self.dynamics.reduction.switch_count
         if comparisons or self.bounds:
@@ -172,7 +170,7 @@ class InputTravel:
             self._record_here(name)
             self._end(f"a law drives the mechanism into the {name}")
             return
-        before, state = self.speed, (self.q, self.t)
+        before = self.speed
         self.speed, impulses = self.contacts.strike(number, before, self.t, bound.restitution)
         pull = self.contacts.pull(number, self.q, self.speed, self.t)
         leaving = -bound.restitution * closing
@@ -186,11 +184,9 @@ class InputTravel:
         self.longest = 2.0 * flight if flight > 0.0 else np.inf
         if rests:
             self.contacts.active.append(number)
-            self.q, self.speed = self.contacts.close(*state[:1], self.speed, self.t)
+            self.q, self.speed = self.contacts.close(self.q, self.speed, self.t)
             self._let_go(self.contacts.release(self.q, self.speed, self.t))
         self._switch()
-
-    longest: float = np.inf
 
     def _let_go(self, numbers: Sequence[int]) -> None:
         """Go behind what rounding could take for stops that the motion leaves."""
@@ -207,11 +203,10 @@ class InputTravel:
         """Close the stops that are touched at the start and pushed against; go behind the others,
         which may be pushed against later.
         """
-        for number, bound in enumerate(self.bounds):
-            normal = self._normal(number)
-            if self._margin(number) > _rounding(bound, normal):
+        for number in range(len(self.bounds)):
+            if self._margin(number) > self._rounding(number):
                 continue
-            closing = float(normal @ self._whole(self.speed, 1))
+            closing = float(self._normal(number) @ self._whole(self.speed, 1))
             pull = self.contacts.pull(number, self.q, self.speed, self.t)
             if closing == 0.0 and pull < 0.0:
                 self.contacts.active.append(number)
@@ -221,18 +216,18 @@ class InputTravel:
 
     def _strike_touched(self) -> None:
         """Hit the stops that are touched at the start."""
-        for number, bound in enumerate(self.bounds):
-            if self._margin(number) <= _rounding(bound, self._normal(number)) and not self.ended:
+        for number in range(len(self.bounds)):
+            if self._margin(number) <= self._rounding(number) and not self.ended:
                 self._hit(number)
+
+    def _rounding(self, number: int) -> float:
+        """Up to which margin a stop is touched."""
+        return self.bounds[number].rounding(float(np.abs(self._normal(number)).max()))
 
     def _margin(self, number: int) -> float:
         """The margin of a stop now."""
         solved = self._geometry(self.q[None], self.speed[None], self._now).solved
-        return float(self._stop_margin(self.bounds[number], solved)[0])
-
-    def _stop_margin(self, bound: Bound, solved: Solved) -> Array:
-        found: Array = bound.side * (np.atleast_1d(bound.asked.values(solved, 1.0)) - bound.value)
-        return found
+        return float(self.bounds[number].inside(solved)[0])
 
     def _whole(self, free: Array, order: int) -> Array:
         """All inputs now, or their derivatives, from those of the free ones, (p,)."""
@@ -263,7 +258,9 @@ class InputTravel:
             self.dynamics.aim(self._geometry(self.q[None], self.speed[None], self._now), turn)
 
     def _switch_margins(self, q: Array, speed: Array, t: Array) -> list[Array]:
-        applied, own = self._applied(q, speed, t), self.dynamics
+        own = self.dynamics
+        switches = own.reduction.switches
+        applied = AppliedLoads(self._geometry(q, speed, t), 1.0, switches=switches)
         rates = own.inputs.complete(speed, t, 1) * own.size
         springs = own.spring_margins(applied.geometry)
         return own.reduction.margins(applied, rates, springs)
@@ -272,21 +269,12 @@ class InputTravel:
     def _now(self) -> Array:
         return np.array([self.t])
 
-    def _applied(self, q: Array, speed: Array, t: Array) -> AppliedLoads:
-        return AppliedLoads(
-            self._geometry(q, speed, t), 1.0, switches=self.dynamics.reduction.switches
-        )
-
     def _geometry(self, q: Array, speed: Array, t: Array) -> Geometry:
-        inputs = self.dynamics.inputs
-        return self._geometry_of(inputs.complete(q, t, 0), inputs.complete(speed, t, 1), t)
-
-    def _geometry_of(self, inputs: Array, speeds: Array, t: Array) -> Geometry:
-        """Rows at all inputs (B, p) and their speeds."""
-        v, found = self.dynamics.positions_of(inputs)
-        rates = self.dynamics.solver.rates(v, speeds * self.dynamics.size)
+        own = self.dynamics
+        v, found = own.positions(q, t)
+        rates = own.solver.rates(v, own.inputs.complete(speed, t, 1) * own.size)
         first = np.where(found[:, None], rates.first, np.nan)
-        return self.dynamics.reduction.geometry(v, first, np.full_like(v, np.nan), t)
+        return own.reduction.geometry(v, first, np.full_like(v, np.nan), t)
 
     def _margins(self, q: Array, speed: Array, t: Array) -> Array:
         """The margins of stops, the pushes of those that are closed, and the margins of switches,
@@ -296,7 +284,7 @@ class InputTravel:
         solved = self._geometry(q, speed, t).solved
         one = np.ones(len(t))
         found = [
-            one if number in active else self._stop_margin(bound, solved)
+            one if number in active else bound.inside(solved)
             for number, bound in enumerate(self.bounds)
         ]
         pushes = {}
@@ -308,11 +296,11 @@ class InputTravel:
         return np.stack(found, axis=1)
 
     def check_inside(self) -> tuple[Bound, float] | None:
-        """A stop beyond which the motion would begin, and the value there."""
+        """A stop beyond which the motion would begin, and its margin there."""
         for number, bound in enumerate(self.bounds):
             margin = self._margin(number)
-            if margin < -_rounding(bound, self._normal(number)):
-                return bound, bound.value + bound.side * margin
+            if margin < -self._rounding(number):
+                return bound, margin
         return None
 
     def _record(
@@ -346,9 +334,9 @@ class InputTravel:
         self.impulses[-1][:] = impulses
         self.speed = after
 
-    def _end(self, why: str, event: str = "end") -> None:
+    def _end(self, why: str) -> None:
         self.ended = why
-        self._record_here(event)
+        self._record_here("end")
 
     def _why(self) -> str:
         """Why no step succeeds."""
@@ -367,11 +355,6 @@ class InputTravel:
         )
 
 
-def _rounding(bound: Bound, normal: Array) -> float:
-    """Up to which margin a stop is touched."""
-    return _TOUCHES * float(np.abs(normal).max()) + 8.0 * EPSILON * abs(bound.value)
-
-
 # ----------------------------------------------------------------------
 # Simulation of a mechanism with several inputs, free or driven by laws.
 
@@ -384,7 +367,6 @@ def simulate_inputs(
     start_speed: Number | Mapping[str, Number],
     policy: ChangePointPolicy,
     certify: bool,
-    forced: bool,
     place: KeyWords,
     progress: Callable[[float], None] | None,
 ) -> Motion:
@@ -393,14 +375,12 @@ def simulate_inputs(
     Raises
     ------
     InputError
-        For friction, further forces, motions straight across change points, and a start at which
+        For friction, motions straight across change points, and a start at which
         an input moves no mass.
     """
     name = f"{model_name(model)} has {len(model.description.inputs)} inputs"
     if policy is not ChangePointPolicy.STOP:
         raise InputError(f"{name}: their simulation stops at change points, leave out {policy}")
-    if forced:
-        raise InputError(f"{name}: further forces are added to one input only")
     speeds = start_speeds(model, start_speed)
     start = _start(model, at)
     reduction = Reduction(model, model_in_time(model), place=place)
@@ -420,11 +400,8 @@ def simulate_inputs(
     )
     beyond = travel.check_inside()
     if beyond is not None:
-        bound, value = beyond
-        raise InputError(
-            f"{bound.asked.name} begins at {value:.6g}, beyond its stop at {bound.value:g}: "
-            f"{place(bound.key)}"
-        )
+        bound, margin = beyond
+        raise bound.passed_at_start(margin, place)
     travel.run()
     return _motion(travel)
 
@@ -451,12 +428,6 @@ def _start(model: Model, at: float | Mapping[str, float] | None) -> Model:
 
 
 def _motion(travel: InputTravel) -> Motion:
-    rows, added = SolvedRows.concatenate(travel.rows), list(travel.added)
-    missing = travel.times[travel.taken :]
-    if len(missing):
-        blank = SolvedRows.blank(missing[:, None], rows.v.shape[1], Status.OUT_OF_REACH)
-        rows = SolvedRows.concatenate([rows, blank.with_columns(v=blank.v)])
-        added += [False] * len(missing)
     told = f"simulated to t = {travel.t:.10g} s"
     if travel.ended:
         model = travel.dynamics.reduction.model
@@ -468,7 +439,11 @@ def _motion(travel: InputTravel) -> Motion:
             for variable, value in zip(inputs, values, strict=True)
         )
         told = f"the motion ends at t = {travel.t:.10g} s, {place}: {travel.ended}"
-    motion = motion_of_rows(travel.dynamics.reduction.named, rows, told, np.array(added))
-    pushes, impulses = (np.concatenate(parts) for parts in (travel.pushes, travel.impulses))
-    motion = with_stops(motion, travel.bounds, pushes, impulses)
-    return watch_energy(motion, travel.dynamics.reduction)
+    found = SimulatedRows(
+        rows=SolvedRows.concatenate(travel.rows),
+        added=travel.added,
+        pushes=np.concatenate(travel.pushes),
+        impulses=np.concatenate(travel.impulses),
+    )
+    missing = travel.times[travel.taken :]
+    return finished_motion(travel.dynamics.reduction, found, travel.bounds, missing, told)

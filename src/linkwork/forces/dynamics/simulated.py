@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
-from dataclasses import replace
+from collections.abc import Mapping
 
 import numpy as np
 
@@ -16,7 +15,6 @@ from linkwork.core.mechanism.inputs import speed_per_second
 from linkwork.core.mechanism.loaded import LoadedBodies
 from linkwork.core.motion.model import Model
 from linkwork.core.motion.stop_quantities import bounded_quantity
-from linkwork.core.results.motion import Motion
 from linkwork.forces.dynamics.events import Bound
 
 _MASSLESS = 1e-12  # of the largest eigenvalue of the matrix of masses: none
@@ -81,20 +79,17 @@ def start_speeds(model: Model, given: Number | Mapping[str, Number]) -> Array:
     """The speed of every input at the start, [rad/s] or [length/s], (p,)."""
     description = model.description
     names = [variable.name for variable in model.equations.inputs]
-    if isinstance(given, Mapping):
-        wanted = {canonical(name): value for name, value in given.items()}
-    elif len(names) == 1 or given not in (0, "0"):
-        if len(names) > 1:
+    if not isinstance(given, Mapping):
+        if len(names) > 1 and given not in (0, "0"):
             raise InputError(
                 f"{model_name(model)} has {len(names)} inputs: name the start speed of each, "
                 f"for example {names[0]}={given}"
             )
-        wanted = {canonical(names[0]): given}
-    else:
-        wanted = {}
+        given = {names[0]: given} if len(names) == 1 else {}
     known = {canonical(name): k for k, name in enumerate(names)}
     speeds = np.zeros(len(names))
-    for name, value in wanted.items():
+    for name, value in given.items():
+        name = canonical(name)
         if name not in known:
             raise InputError(
                 f'start speed: there is no input "{name}" {choices("inputs", names, name)}'
@@ -109,18 +104,6 @@ def start_speeds(model: Model, given: Number | Mapping[str, Number]) -> Array:
             raise InputError(f"start speed: {error.message}") from None
         speeds[k] = own * float(model.input_scale[k])
     return speeds
-
-
-def with_stops(motion: Motion, bounds: Sequence[Bound], pushes: Array, impulses: Array) -> Motion:
-    """The motion with what its stops give: pushes and impulses (K, S) of its first K rows."""
-    tables: list[dict[str, Array]] = [{}, {}]
-    for table, parts in zip(tables, (pushes, impulses), strict=True):
-        for bound, part in zip(bounds, parts.T, strict=True):
-            none = np.zeros(len(motion))
-            none[len(part) :] = np.nan
-            none[: len(part)] = bound.side * part
-            table[bound.asked.name] = table.get(bound.asked.name, 0.0) + none
-    return replace(motion, stop_forces=tables[0], stop_impulses=tables[1])
 
 
 def bounds_of(named: Model) -> list[Bound]:

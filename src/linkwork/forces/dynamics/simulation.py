@@ -9,7 +9,7 @@ import numpy as np
 
 from linkwork.core.foundation.arrays import Array
 from linkwork.core.foundation.errors import InputError, KeyWords, key_text
-from linkwork.core.foundation.statuses import ChangePointPolicy, Status
+from linkwork.core.foundation.statuses import ChangePointPolicy
 from linkwork.core.foundation.values import as_told, check_flags, finite_number
 from linkwork.core.mechanism.dimensions import Number
 from linkwork.core.motion.higher_rates import model_in_time
@@ -18,17 +18,16 @@ from linkwork.core.motion.rows_between import motion_of_rows
 from linkwork.core.motion.solving import solve
 from linkwork.core.numerics.system import SolvedRows
 from linkwork.core.results.motion import Motion
-from linkwork.forces.dynamics.contacts import watch_energy, with_contacts, with_flywheels
+from linkwork.forces.dynamics.contacts import SimulatedRows, finished_motion, with_contacts
 from linkwork.forces.dynamics.curve import PositionCurve, curve_of
 from linkwork.forces.dynamics.events import Sample
-from linkwork.forces.dynamics.reduction import Forcing, Reduction
+from linkwork.forces.dynamics.reduction import Reduction
 from linkwork.forces.dynamics.several_inputs import simulate_inputs
 from linkwork.forces.dynamics.simulated import (
     bounds_of,
     check_loaded,
     start_speeds,
     straight_or_stop,
-    with_stops,
 )
 from linkwork.forces.dynamics.travel import Travel
 
@@ -48,7 +47,6 @@ def simulate(
     start_speed: Number | Mapping[str, Number] = 0,
     change_points: str | ChangePointPolicy = ChangePointPolicy.STOP,
     certify: bool = True,
-    forcing: Sequence[Forcing] = (),
     place: KeyWords = key_text,
     progress: Callable[[float], None] | None = None,
 ) -> Motion:
@@ -69,8 +67,6 @@ def simulate(
         ``stop`` at change points, or go ``straight`` on.
     certify : bool
         Prove the positions of all rows.
-    forcing : sequence of Forcing
-        Further generalised forces.
     place : callable
         Words the key of a load that has no value.
     progress : callable, optional
@@ -89,11 +85,11 @@ def simulate(
     if len(model.description.inputs) > 1:
         several = simulate_inputs(
             model.untimed or model, times=times, at=at, start_speed=start_speed, policy=policy,
-            certify=certify, forced=bool(forcing), place=place, progress=progress,
+            certify=certify, place=place, progress=progress,
         )  # fmt: skip
-        return with_contacts(model, with_flywheels(model, several))
+        return with_contacts(model, several)
     speed = float(start_speeds(model, start_speed)[0])
-    reduction, curve = start_of(model, at, policy, certify, forcing, place)
+    reduction, curve = start_of(model, at, policy, certify, place)
     travel = Travel(
         curve=curve,
         reduction=reduction,
@@ -105,8 +101,7 @@ def simulate(
     _check_inertia(travel)
     travel.begin(speed)
     travel.run()
-    motion = with_flywheels(model, _motion(travel, certify))
-    return with_contacts(model, motion, *_states(travel))
+    return with_contacts(model, _motion(travel, certify), *_states(travel))
 
 
 def start_of(
@@ -114,7 +109,6 @@ def start_of(
     at: float | Mapping[str, float] | None,
     policy: ChangePointPolicy,
     certify: bool,
-    forcing: Sequence[Forcing] = (),
     place: KeyWords = key_text,
 ) -> Start:
     """The loads, and the curve of positions through the start."""
@@ -122,7 +116,7 @@ def start_of(
     position = solve(model, at, certify=False, throw=True)
     there = model.from_position(position)
     start = there.equations.start.copy()
-    reduction = Reduction(model, model_in_time(model), forcing, place)
+    reduction = Reduction(model, model_in_time(model), place)
     return reduction, curve_of(model, start, policy, certify)
 
 
@@ -150,11 +144,7 @@ def _check_inside(travel: Travel) -> None:
     for bound in travel.bounds:
         if bound.is_beyond(travel.leg, travel.s, 0.0, travel.gain):
             margin = float(bound.margin(travel.leg, here, still, still, travel.gain)[0])
-            value = bound.value + bound.side * margin
-            raise InputError(
-                f"{bound.asked.name} begins at {value:.6g}, beyond its stop at {bound.value:g}: "
-                f"{travel.reduction.place(bound.key)}"
-            )
+            raise bound.passed_at_start(margin, travel.reduction.place)
 
 
 def _check_inertia(travel: Travel) -> None:
@@ -170,34 +160,31 @@ def _check_inertia(travel: Travel) -> None:
 
 
 def _motion(travel: Travel, certify: bool) -> Motion:
-    named = travel.reduction.named
-    samples = [*travel.samples]
     if travel.ended:
-        now = travel.t, travel.s, travel.speed
-        last = Sample(
-            t=now[0], leg=travel.number, lap=travel.lap, s=now[1], speed=now[2],
-            acceleration=np.nan, event="end", lost=travel.lost,
-        )  # fmt: skip
-        samples.append(last)
-    rows = _rows(travel, samples, certify)
-    missing = travel.times[travel.taken :]
-    if len(missing):
-        blank = SolvedRows.blank(missing[:, None], rows.v.shape[1], Status.OUT_OF_REACH)
-        rows = SolvedRows.concatenate([rows, blank.with_columns(v=blank.v)])
-    added = np.array([*(bool(sample.event) for sample in samples), *([False] * len(missing))])
+        travel.record_end()
+    samples, missing = travel.samples, travel.times[travel.taken :]
     told = f"simulated to t = {travel.t:.10g} s"
     if travel.held is not None:
         held = f"held by {travel.holder}" if travel.holder else "in equilibrium"
         told += f"; at rest since t = {travel.held:.10g} s, {held}"
     if travel.ended:
         told = f"the motion ends at t = {travel.t:.10g} s: {travel.ended}"
-    motion = motion_of_rows(named, rows, told, added)
     pushes, impulses = np.zeros((2, len(samples), len(travel.bounds)))
     for k, sample in enumerate(samples):
         if sample.stop >= 0:
             pushes[k, sample.stop], impulses[k, sample.stop] = sample.push, sample.impulse
-    motion = with_stops(motion, travel.bounds, pushes, impulses)
-    motion = watch_energy(motion, travel.reduction)
+    motion = finished_motion(
+        travel.reduction,
+        SimulatedRows(
+            rows=_rows(travel, samples, certify),
+            added=[bool(sample.event) for sample in samples],
+            pushes=pushes,
+            impulses=impulses,
+        ),
+        travel.bounds,
+        missing,
+        told,
+    )
     if not travel.reduction.rubs:
         return motion
     lost = np.array([*(sample.lost for sample in samples), *([np.nan] * len(missing))])
@@ -247,10 +234,4 @@ def _rows(travel: Travel, samples: Sequence[Sample], certify: bool) -> SolvedRow
                 limit=np.array([sample.event for sample in own], dtype=object),
             )
         )
-    names = set.intersection(*(set(part.columns) for part in parts))
-    wanted = {
-        "inputs", "v", "first", "second", "status", "iterations", "residual", "condition",
-        "certification", "radius", "uniqueness_radius", "branch", "limit",
-    }  # fmt: skip
-    kept = [SolvedRows(**{name: part.columns[name] for name in names & wanted}) for part in parts]
-    return SolvedRows.concatenate(kept).take(np.argsort(order, kind="stable"))
+    return SolvedRows.concatenate(parts).take(np.argsort(order, kind="stable"))

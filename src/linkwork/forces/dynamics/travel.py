@@ -9,7 +9,7 @@ import numpy as np
 
 from linkwork.forces.dynamics.collocation import Step, shorter_step, try_step
 from linkwork.forces.dynamics.events import Event, Pace, first_event, just_behind, margins_on
-from linkwork.forces.dynamics.rest import Passage, Support, first_start, just_ahead
+from linkwork.forces.dynamics.rest import Passage, first_start, just_ahead
 
 _SHORTEST = 1e-14  # of the whole time: a shorter step makes no way
 _FIRST = 0.02  # of the time in which the leg would be passed: the first step
@@ -32,7 +32,7 @@ class Travel(Passage):
             way = self.speed
         else:
             self.still, way = True, self._starting()
-        ((stop, push),) = self._support.pushes(self.leg, self.s, np.zeros(1), self.gain)
+        ((stop, push),) = self._pushes(np.zeros(1))
         if way:
             self._record(0.0, self.s, self.speed, self._now())
         else:
@@ -58,7 +58,7 @@ class Travel(Passage):
                 continue
             short = self.until - self.t
             step, following, rough = try_step(
-                self._acceleration, self.t, self.s, self.speed, min(h, short), rougher
+                self._acceleration, self.t, self.s, self.speed, min(h, short), rougher=rougher
             )
             shorter = None if step is None else shorter_step(step, *self.leg.reach)
             if shorter is not None:
@@ -71,7 +71,8 @@ class Travel(Passage):
                     self.ended = self._unbounded()
                 continue
             rougher = rough if following <= step.h else math.inf
-            event = self._event(step)
+            margins = margins_on(self.leg, self.bounds, self.rubbing, self.gain)
+            event = first_event(step, step.t + step.h, margins, self.reduction.switch_count)
             end = step.t + step.h if event is None else self._end(event)
             self._take(step, end)
             h = following if event is None and step.h < short else max(following, h)
@@ -92,10 +93,6 @@ class Travel(Passage):
         if math.isfinite(pull) and pull > 0.0:
             times.append(math.sqrt((high - low) / pull))
         return max(_FIRST * min(times), 10.0 * _SHORTEST * self.until)
-
-    def _event(self, step: Step) -> Event | None:
-        margins = margins_on(self.leg, self.bounds, self.rubbing, self.gain)
-        return first_event(step, step.t + step.h, margins, self.reduction.switch_count)
 
     def _end(self, event: Event) -> float:
         """Stops are met just before, all others just after."""
@@ -178,8 +175,7 @@ class Travel(Passage):
         """Remain at rest up to a time."""
         times = self.times[self.taken :]
         times = times[times <= until]
-        pushes = self._support.pushes(self.leg, self.s, times, self.gain)
-        for t, (stop, push) in zip(times.tolist(), pushes, strict=True):
+        for t, (stop, push) in zip(times.tolist(), self._pushes(times), strict=True):
             self._record(t, self.s, 0.0, 0.0, stop=stop, push=push)
         self.taken += len(times)
         self.t = until
@@ -250,14 +246,9 @@ class Travel(Passage):
         signs of friction are those of this motion.
         """
         self.reduction.release()
-        free = self._support.free
-        _, way = first_start(self.leg, self.s, self.t, self.t, self.gain, free)
+        _, way = first_start(self.leg, self.s, self.t, self.t, self.gain, self._free)
         self._set_off(way)
         return way
-
-    @property
-    def _support(self) -> Support:
-        return Support(self.bounds, self.touching)
 
     def _set_off(self, way: float) -> None:
         self._switch(way)
@@ -277,12 +268,12 @@ class Travel(Passage):
     def _rest(self) -> bool:
         """Stay at rest as long as nothing starts the machine; whether time has passed."""
         self.reduction.release()
-        begin, free = self.t, self._support.free
-        start, way = first_start(self.leg, self.s, begin, self.until, self.gain, free)
+        begin = self.t
+        start, way = first_start(self.leg, self.s, begin, self.until, self.gain, self._free)
         self._stay(np.nextafter(start, begin) if way else start)
         if not way:
             self.held = begin
-            self.holder = self._support.holder(self.leg, self.s, self.t, self.gain)
+            self.holder = self._holding()
             return True
         self.t = start
         self._set_off(way)

@@ -12,7 +12,7 @@ import numpy as np
 from linkwork.core.expression.derivatives import Jet, evaluate
 from linkwork.core.expression.grammar import CONSTANTS, parse
 from linkwork.core.expression.tree import Node, names_in, with_switches
-from linkwork.core.foundation.arrays import Array, BoolArray, ComplexArray
+from linkwork.core.foundation.arrays import AnyArray, Array, BoolArray, ComplexArray
 from linkwork.core.foundation.containers import FrozenDict
 from linkwork.core.foundation.lanes import cis, is_batched
 from linkwork.core.foundation.names import GROUND
@@ -78,6 +78,13 @@ class AppliedLoads:
     def turn(self, link: str, torque: Array) -> None:
         """A torque on a link, (B,)."""
         self.torques.append((link, torque))
+
+    def moving(self, geometry: Geometry) -> Iterator[tuple[AnyArray, Jet]]:
+        """Every force and torque with what it moves in the rows of a geometry."""
+        for point, force, _ in self.forces:
+            yield force, geometry.place(point)
+        for link, torque in self.torques:
+            yield torque, geometry.angle(link)
 
     def value(self, number: Number) -> Array:
         """A number or formula in all rows, (B,)."""
@@ -158,13 +165,14 @@ class AppliedLoads:
             )
         )
         falling = mass * (velocity * np.conj(fall)).real
+        force: Any = mass * (fall - bend)  # real where nothing moves
         self.masses.append(
             Body(
                 link=link,
                 centre=centre,
                 place=place.v,
                 # weight and inertia of eq. (71) as one load
-                force=as_complex(mass * (fall - bend)),
+                force=force + 0j,
                 torque=-inertia * turned,
                 mass=mass,
                 inertia=inertia,
@@ -177,9 +185,9 @@ class AppliedLoads:
         self.kinetic.append(0.5 * (mass * np.abs(velocity) ** 2 + inertia * spin**2))
 
 
-def as_complex(force: Any) -> ComplexArray:
-    """A force that may be real where nothing moves."""
-    found: ComplexArray = force + 0j
+def virtual_work(load: AnyArray, moved: Jet) -> Array:
+    """The work of a force or torque per unit of what the geometry moves with, (B,)."""
+    found: Array = (np.conj(load) * moved.d1).real
     return found
 
 

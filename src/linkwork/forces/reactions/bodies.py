@@ -7,7 +7,8 @@ from dataclasses import replace
 
 import numpy as np
 
-from linkwork.circuits.classification import Seen, as_linkage
+from linkwork.circuits.classification import as_linkage
+from linkwork.circuits.reading_loops import Seen
 from linkwork.core.foundation.arrays import Array
 from linkwork.core.mechanism.linkage import Linkage
 from linkwork.core.motion.model import Model

@@ -8,29 +8,34 @@ unknowns from which a size follows, (B, m).
 from __future__ import annotations
 
 import math
+from abc import ABC, abstractmethod
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import Protocol
 
 import numpy as np
 
 from linkwork.core.foundation.arrays import Array, BoolArray, IndexArray, solutions
 
 
-class Size(Protocol):
-    """The size of a force as a function of unknowns."""
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Size(ABC):
+    """The size of a force as a function of ``unknowns``, by their numbers, m.
 
-    @property
-    def unknowns(self) -> tuple[int, ...]:
-        """The numbers of the unknowns from which it follows, m."""
+    Without other rules it has no edges, and is the same in all rows.
+    """
 
+    unknowns: tuple[int, ...]
+
+    @abstractmethod
     def value(self, u: Array) -> Array:
         """The size, (B,)."""
 
+    @abstractmethod
     def gradient(self, u: Array) -> Array:
         """Its derivatives by u, (B, m); at an edge those of one side."""
 
+    @abstractmethod
     def bend(self, u: Array, reach: Array) -> Array:
         """The most that the gradient changes per change of u within a distance, (B,).
 
@@ -39,22 +44,25 @@ class Size(Protocol):
 
     def rows(self, which: IndexArray) -> Size:
         """The size in some rows."""
+        return self
 
     def side(self, u: Array) -> int:
         """The side of its edges on which unknowns (m,) are."""
+        return 0
 
     def inside(self, u: Array, side: int) -> Array:
         """How far unknowns (B, m) are on a side: negative beyond its edge, (B,)."""
+        return np.ones(len(u))
 
     def smooth(self, side: int) -> Size:
         """The size as it is on a side, continued smoothly beyond its edges."""
+        return self
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
-class NormOf:
+class NormOf(Size):
     """``factor`` times the size of a vector of two components."""
 
-    unknowns: tuple[int, int]
     factor: float
 
     def value(self, u: Array) -> Array:
@@ -70,24 +78,11 @@ class NormOf:
         # a unit vector turns by at most the change over the smaller of both sizes
         return np.where(reach <= size / 2.0, self.factor * 2.0 / size, np.inf)
 
-    def rows(self, which: IndexArray) -> NormOf:
-        return self
-
-    def side(self, u: Array) -> int:
-        return 0
-
-    def inside(self, u: Array, side: int) -> Array:
-        return np.ones(len(u))
-
-    def smooth(self, side: int) -> NormOf:
-        return self
-
 
 @dataclass(frozen=True, kw_only=True, eq=False)
-class Sided:
+class Sided(Size):
     """A number times ``plus`` where it is positive, times ``minus`` where not, and a constant."""
 
-    unknowns: tuple[int]
     plus: Array | float
     minus: Array | float
     constant: float = 0.0
@@ -103,11 +98,8 @@ class Sided:
         return np.where(reach < np.abs(u[:, 0]), 0.0, np.inf)
 
     def rows(self, which: IndexArray) -> Sided:
-        plus, minus = (
-            side[which] if isinstance(side, np.ndarray) and side.ndim else side
-            for side in (self.plus, self.minus)
-        )
-        return Sided(unknowns=self.unknowns, plus=plus, minus=minus, constant=self.constant)
+        plus, minus = _in_rows(self.plus, which), _in_rows(self.minus, which)
+        return replace(self, plus=plus, minus=minus)
 
     def side(self, u: Array) -> int:
         return 1 if u[0] >= 0.0 else -1
@@ -122,10 +114,9 @@ class Sided:
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
-class LargerOf:
+class LargerOf(Size):
     """The larger of two numbers times ``factors``, without signs."""
 
-    unknowns: tuple[int, int]
     factors: tuple[float, float]
 
     def value(self, u: Array) -> Array:
@@ -142,9 +133,6 @@ class LargerOf:
         sizes = np.abs(u) * self.factors
         apart = np.abs(sizes[:, 0] - sizes[:, 1])
         return np.where(reach * sum(self.factors) < apart, 0.0, np.inf)
-
-    def rows(self, which: IndexArray) -> LargerOf:
-        return self
 
     def side(self, u: Array) -> int:
         larger = int(np.argmax(np.abs(u) * self.factors))
@@ -164,10 +152,9 @@ class LargerOf:
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
-class Linear:
+class Linear(Size):
     """A sum of unknowns times ``factors`` and a constant: another size on one side of its edges."""
 
-    unknowns: tuple[int, ...]
     factors: tuple[Array | float, ...]
     constant: float = 0.0
 
@@ -185,19 +172,11 @@ class Linear:
         return np.zeros(len(u))
 
     def rows(self, which: IndexArray) -> Linear:
-        factors = tuple(
-            own[which] if isinstance(own, np.ndarray) and own.ndim else own for own in self.factors
-        )
-        return Linear(unknowns=self.unknowns, factors=factors, constant=self.constant)
+        return replace(self, factors=tuple(_in_rows(factor, which) for factor in self.factors))
 
-    def side(self, u: Array) -> int:
-        return 0
 
-    def inside(self, u: Array, side: int) -> Array:
-        return np.ones(len(u))
-
-    def smooth(self, side: int) -> Linear:
-        return self
+def _in_rows(factor: Array | float, which: IndexArray) -> Array | float:
+    return factor[which] if isinstance(factor, np.ndarray) and factor.ndim else factor
 
 
 # ----------------------------------------------------------------------
@@ -260,15 +239,13 @@ class Coupling:
         rows, count = self.start.shape[:2]
         s, found = np.full((rows, count), np.nan), np.zeros(rows, dtype=bool)
         proved = np.zeros(rows, dtype=bool)
-        fine = np.isfinite(self.start).all(axis=(1, 2)) & np.isfinite(self.change).all(
-            axis=(1, 2, 3)
-        )
-        where = np.flatnonzero(fine)
-        self.rows(where)._solve_into(s, found, proved, where)
+        fine = np.isfinite(self.start).all(axis=(1, 2))
+        fine &= np.isfinite(self.change).all(axis=(1, 2, 3))
+        s[fine], found[fine], proved[fine] = self.rows(np.flatnonzero(fine))._solve_finite()
         return Coupled(sizes=s, found=found, proved=proved)
 
-    def _solve_into(self, s: Array, found: BoolArray, proved: BoolArray, where: IndexArray) -> None:
-        """Solve all rows, and write them to their places."""
+    def _solve_finite(self) -> tuple[Array, BoolArray, BoolArray]:
+        """The columns of :class:`Coupled`; all rows have finite coefficients."""
         free = self._free
         at, solved = self._newton(free, np.ones(len(free)))
         # a contraction has one fixed point only: no other branch to fall on
@@ -283,8 +260,7 @@ class Coupling:
         lost = np.flatnonzero(~complete)
         if len(lost):
             direct[lost] = self.rows(lost)._excluded(at[lost])
-        s[where] = np.where(complete[:, None], at, np.nan)
-        found[where], proved[where] = complete, direct
+        return np.where(complete[:, None], at, np.nan), complete, direct
 
     def rows(self, which: IndexArray) -> Coupling:
         """Some rows."""

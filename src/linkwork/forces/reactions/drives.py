@@ -10,7 +10,7 @@ from linkwork.core.foundation.arrays import AnyArray, Array
 from linkwork.core.foundation.names import GROUND
 from linkwork.core.mechanism.inputs import Input
 from linkwork.core.results.quantity import Kind
-from linkwork.forces.reactions.applied import AppliedLoads
+from linkwork.forces.reactions.applied import AppliedLoads, virtual_work
 from linkwork.forces.reactions.coupling import NormOf
 from linkwork.forces.reactions.free_bodies import Act, FreeBodies, Holder, Reading
 from linkwork.forces.reactions.parts import drive_part
@@ -91,12 +91,11 @@ def energies(applied: AppliedLoads) -> dict[str, Array]:
         "kinetic_energy": sum(applied.kinetic, zero),
         "stored_energy": sum(applied.stored, zero),
     }
-    pushed = sum(((f.conj() * geometry.place(p).d1).real for p, f, _ in applied.forces), zero)
-    turned = sum((torque * geometry.angle(link).d1 for link, torque in applied.torques), zero)
+    pushed = sum((virtual_work(*pair) for pair in applied.moving(geometry)), zero)
     weights = sum((body.weight_rate for body in applied.masses), zero)
     moving = sum((body.kinetic_rate for body in applied.masses), zero)
     stored = sum(applied.stored_rates, zero)
-    found["load_power"] = (pushed + turned) * rate + weights + stored
+    found["load_power"] = pushed * rate + weights + stored
     found["energy_rate"] = moving + stored
     return found
 
@@ -124,11 +123,7 @@ def join_pins(bodies: FreeBodies) -> None:
                 forces.append(force)
                 for name in _names(bodies, point, other, axis):
                     about = f"force of the pin {point} on {other}"
-                    reading = Reading(
-                        name=name, kind=Kind.FORCE, about=about, terms=((force, 1.0),),
-                        pin=(point, other, links[0]),
-                    )  # fmt: skip
-                    bodies.readings.append(reading)
+                    bodies.read(name, Kind.FORCE, about, force, pin=(point, other, links[0]))
             _rub_pin(bodies, point, other, links[0], (forces[0], forces[1]))
 
 

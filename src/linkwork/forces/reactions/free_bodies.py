@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, field
+from typing import Any
 
 import numpy as np
 
@@ -71,7 +72,7 @@ class Reading:
     name: str
     kind: Kind
     about: str
-    terms: tuple[tuple[int, Array | float], ...]
+    terms: tuple[tuple[int, Array | float], ...] = ()
     constant: Array | float = 0.0
     follow: int | None = None
     pushes: bool = False
@@ -170,18 +171,20 @@ class FreeBodies:
         self, name: str, kind: Kind, about: str, size: Size, acts: tuple[Act, ...], motion: Array
     ) -> None:
         own = self.follow(size, *acts, motion=motion)
-        self.readings.append(
-            Reading(name=f"{name}.friction", kind=kind, about=about, terms=(), follow=own)
-        )
+        self.read(f"{name}.friction", kind, about, follow=own)
 
     def read(
-        self, name: str, kind: Kind, about: str, unknown: int, factor: Array | float = 1.0,
-        *, pushes: bool = False,
+        self, name: str, kind: Kind, about: str, unknown: int | None = None,
+        factor: Array | float = 1.0, **further: Any,
     ) -> None:  # fmt: skip
-        """Name an unknown, or a multiple of it."""
-        self.readings.append(
-            Reading(name=name, kind=kind, about=about, terms=((unknown, factor),), pushes=pushes)
-        )
+        """Name an unknown, or a multiple of it; ``further`` fields of the :class:`Reading`."""
+        terms = () if unknown is None else ((unknown, factor),)
+        self.readings.append(Reading(name=name, kind=kind, about=about, terms=terms, **further))
+
+    @property
+    def rubs(self) -> bool:
+        """Whether a joint has friction."""
+        return any(follower.motion is not None for follower in self.following)
 
     def matrix(self) -> Array:
         """The sum of forces and scaled moments on every body for a unit of each unknown.

@@ -21,7 +21,7 @@ from linkwork.core.mechanism.part.weld import Weld
 from linkwork.core.results.quantity import Kind
 from linkwork.forces.reactions.applied import AppliedLoads
 from linkwork.forces.reactions.coupling import LargerOf, Sided, Size
-from linkwork.forces.reactions.free_bodies import Act, FreeBodies, Holder, Reading
+from linkwork.forces.reactions.free_bodies import Act, FreeBodies, Holder
 from linkwork.forces.reactions.geometry import Geometry
 
 # ----------------------------------------------------------------------
@@ -111,18 +111,13 @@ def line_of(line: tuple[str, str], geometry: Geometry) -> ComplexArray:
     return unit
 
 
-def along_line(bodies: FreeBodies, point: str, on: str, line: tuple[str, str]) -> int:
-    """A force on a point along a line of another body."""
-    geometry = bodies.geometry
-    way, place = line_of(line, geometry), geometry.place(point).v
-    return bodies.pair(bodies.at(point), bodies.link(on), place, way)
-
-
-def across_line(bodies: FreeBodies, point: str, on: str, line: tuple[str, str]) -> int:
-    """A force on a point to the left of a line of another body."""
-    geometry = bodies.geometry
-    way, place = line_of(line, geometry), geometry.place(point).v
-    return bodies.pair(bodies.at(point), bodies.link(on), place, 1j * way)
+def along_line(
+    bodies: FreeBodies, holder: Holder, point: str, on: str, line: tuple[str, str],
+    turn: complex = 1.0,
+) -> int:  # fmt: skip
+    """A force at a point of one body along a line of another, or turned to the left of it."""
+    way = turn * line_of(line, bodies.geometry)
+    return bodies.pair(holder, bodies.link(on), bodies.geometry.place(point).v, way)
 
 
 def rub_on_line(
@@ -163,14 +158,11 @@ def mesh(
     along = bodies.pair(second, first, place, 1j * away)
     about = f"force of {links[0]} on {links[1]} across the line of centres"
     bodies.read(f"{name}.tangent", Kind.FORCE, about, along)
-    acts = _pair(second, first, place, away)
+    acts = Act(second, place, away), Act(first, place, -away)
     plus, minus = (_separating(side, pressure, slope) for side in (1.0, -1.0))
     apart = bodies.follow(Sided(unknowns=(along,), plus=plus, minus=minus), *acts)
     about = f"force of {links[0]} on {links[1]} along the line of centres"
-    radial = f"{name}.radial"
-    bodies.readings.append(
-        Reading(name=radial, kind=Kind.FORCE, about=about, terms=(), follow=apart)
-    )
+    bodies.read(f"{name}.radial", Kind.FORCE, about, follow=apart)
     friction = bodies.friction(name)
     if friction is not None:
         # teeth slide at their distance from the pitch point times the relative speed of rotation
@@ -179,10 +171,6 @@ def mesh(
             unknowns=(along,), plus=arm * np.hypot(1.0, plus), minus=arm * np.hypot(1.0, minus)
         )
         bodies.rub_couple(name, size, second, first)
-
-
-def _pair(on: Holder, against: Holder, place: ComplexArray, way: ComplexArray) -> tuple[Act, Act]:
-    return Act(on, place, way), Act(against, place, -way)
 
 
 def _separating(side: float, pressure: float, slope: Array | float) -> Array:
@@ -219,10 +207,7 @@ def join_belt(belt: Belt, bodies: FreeBodies) -> None:
     for number, own in ((1, 0.5), (2, -0.5)):
         about = f"tension of the strand {'left' if number == 1 else 'right'} of the centres"
         name = f"{belt.name}.tension{number}"
-        reading = Reading(
-            name=name, kind=Kind.FORCE, about=about, terms=((pull, own),), follow=both, pushes=True
-        )
-        bodies.readings.append(reading)
+        bodies.read(name, Kind.FORCE, about, pull, own, follow=both, pushes=True)
 
 
 def _strand(belt: Belt, bodies: FreeBodies, side: float) -> tuple[ComplexArray, ComplexArray]:
@@ -273,14 +258,7 @@ def _read_ends(cylinder: Cylinder, bodies: FreeBodies, force: int | None) -> Non
         parts: dict[str, Array] = {"x": along.real, "y": along.imag}
         for axis, part in parts.items():
             about = f"force of the pin {point} on {cylinder.name}"
-            bodies.readings.append(
-                Reading(
-                    name=f"{stem}.{axis}",
-                    kind=Kind.FORCE,
-                    about=about,
-                    terms=() if force is None else ((force, sign * part),),
-                )
-            )
+            bodies.read(f"{stem}.{axis}", Kind.FORCE, about, force, sign * part)
 
 
 # ----------------------------------------------------------------------
@@ -358,12 +336,7 @@ def join_rolling(rolling: Rolling, bodies: FreeBodies) -> None:
     about = f"force of {rolling.on} on {rolling.wheel} that keeps it from slipping"
     friction = bodies.friction(rolling.name)
     adhesion = None if friction is None else (normal, bodies.number(friction.mu))
-    bodies.readings.append(
-        Reading(
-            name=f"{rolling.name}.tangent", kind=Kind.FORCE, about=about, terms=((grip, 1.0),),
-            adhesion=adhesion,
-        )
-    )  # fmt: skip
+    bodies.read(f"{rolling.name}.tangent", Kind.FORCE, about, grip, adhesion=adhesion)
 
 
 def _contact(
@@ -389,7 +362,8 @@ def _contact(
 def drive_rolling(rolling: Rolling, bodies: FreeBodies) -> int:
     """The force on the wheel's centre along the line."""
     assert rolling.line is not None
-    return along_line(bodies, rolling.center, rolling.on, rolling.line)
+    pin = bodies.at(rolling.center)
+    return along_line(bodies, pin, rolling.center, rolling.on, rolling.line)
 
 
 # ----------------------------------------------------------------------
@@ -399,9 +373,8 @@ def drive_rolling(rolling: Rolling, bodies: FreeBodies) -> int:
 @join_part.register
 def join_slider(slider: Slider, bodies: FreeBodies) -> None:
     """The normal force at the slider's first point, positive to the left, and the moment."""
-    place = bodies.geometry.place(slider.points[0]).v
     link, on = bodies.link(slider.link), bodies.link(slider.on)
-    force = bodies.pair(link, on, place, 1j * line_of(slider.line, bodies.geometry))
+    force = along_line(bodies, link, slider.points[0], slider.on, slider.line, 1j)
     about = f"force of {slider.on} on {slider.link} at {slider.points[0]}, to the left of its line"
     bodies.read(f"{slider.name}.normal", Kind.FORCE, about, force)
     # a slider transmits a moment: its link cannot turn on the other
@@ -423,9 +396,7 @@ def join_slider(slider: Slider, bodies: FreeBodies) -> None:
 @push_along.register
 def drive_slider(slider: Slider, bodies: FreeBodies) -> int:
     """The force along the line at the slider's first point."""
-    place = bodies.geometry.place(slider.points[0]).v
-    along = line_of(slider.line, bodies.geometry)
-    return bodies.pair(bodies.link(slider.link), bodies.link(slider.on), place, along)
+    return along_line(bodies, bodies.link(slider.link), slider.points[0], slider.on, slider.line)
 
 
 # ----------------------------------------------------------------------
@@ -435,21 +406,21 @@ def drive_slider(slider: Slider, bodies: FreeBodies) -> int:
 @join_part.register
 def join_slot(slot: Slot, bodies: FreeBodies) -> None:
     """The normal force on the pin, positive to the left of the line."""
-    force = across_line(bodies, slot.point, slot.on, slot.line)
+    pin = bodies.at(slot.point)
+    force = along_line(bodies, pin, slot.point, slot.on, slot.line, 1j)
     about = f"force of the slot on the pin {slot.point}, to the left of its line"
     bodies.read(f"{slot.name}.normal", Kind.FORCE, about, force)
     friction = bodies.friction(slot.name)
     if friction is not None:
         mu = bodies.number(friction.mu)
         size = Sided(unknowns=(force,), plus=mu, minus=mu)
-        pair = bodies.at(slot.point), bodies.link(slot.on)
-        rub_on_line(slot.name, bodies, size, pair, slot.point, slot.line)
+        rub_on_line(slot.name, bodies, size, (pin, bodies.link(slot.on)), slot.point, slot.line)
 
 
 @push_along.register
 def drive_slot(slot: Slot, bodies: FreeBodies) -> int:
     """The force on the pin along the slot."""
-    return along_line(bodies, slot.point, slot.on, slot.line)
+    return along_line(bodies, bodies.at(slot.point), slot.point, slot.on, slot.line)
 
 
 # ----------------------------------------------------------------------
@@ -481,10 +452,7 @@ def _pull(spring: Spring, between: tuple[str, str], bodies: FreeBodies) -> None:
     applied.push(between[0], pull)
     applied.push(between[1], -pull)
     about = "tension of the spring and its damper"
-    name = f"{spring.name}.tension"
-    bodies.readings.append(
-        Reading(name=name, kind=Kind.FORCE, about=about, terms=(), constant=tension)
-    )
+    bodies.read(f"{spring.name}.tension", Kind.FORCE, about, constant=tension)
 
 
 def _wind(spring: Spring, links: tuple[str, str], bodies: FreeBodies) -> None:
@@ -495,10 +463,7 @@ def _wind(spring: Spring, links: tuple[str, str], bodies: FreeBodies) -> None:
     applied.turn(links[0], torque)
     applied.turn(links[1], -torque)
     about = f"torque of the spring on {links[0]}, and against it on {links[1]}"
-    name = f"{spring.name}.torque"
-    bodies.readings.append(
-        Reading(name=name, kind=Kind.MOMENT, about=about, terms=(), constant=torque)
-    )
+    bodies.read(f"{spring.name}.torque", Kind.MOMENT, about, constant=torque)
 
 
 def wound_angle(spring: Spring, linkage: Linkage) -> float:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace
 from functools import cached_property
@@ -300,7 +299,6 @@ def _reactions(
 _MOVES = (ForceStatus.FOUND, ForceStatus.UNDETERMINED)
 _MOST_ROWS = 80
 _PRECISE = 1e-11  # of the input value
-_BESIDE = 0.02  # of the way to the zero: the next rows are on either side of it
 
 
 def locate_stalls(
@@ -308,8 +306,8 @@ def locate_stalls(
 ) -> tuple[Stall, ...]:
     """Where the rows of a motion change between motion and self-locking; none with several inputs.
 
-    The interval between two rows is narrowed by secants and halving to the precision of the input;
-    the bracket is the narrowest with proofs on both sides.
+    The interval between two rows is halved to the precision of the input; the bracket is the
+    narrowest with proofs on both sides.
 
     Raises
     ------
@@ -335,13 +333,12 @@ def locate_stalls(
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class _Row:
-    """The forces at an input value; ``ease`` is 1 over the effort, 0 where none moves it."""
+    """Whether an effort moves the mechanism at an input value, and whether this is proved."""
 
     value: float
     position: Position
     moves: bool
     proved: bool
-    ease: float
 
 
 @dataclass(frozen=True, eq=False)
@@ -359,13 +356,11 @@ class _Search:
         found = forces_of_position(self.model, position)
         if found.status not in (*_MOVES, ForceStatus.SELF_LOCKING):
             return None
-        effort = float(found[f"{self.name}.effort"])
         return _Row(
             value=value,
             position=position,
             moves=found.status in _MOVES,
             proved=bool(found.proved) and position.certificate.certified,
-            ease=1.0 / effort if effort else math.inf,
         )
 
     def between(self, moving: float, locked: float) -> Stall | None:
@@ -374,18 +369,13 @@ class _Search:
         # another branch than that of the rows has no stall there
         if near is None or far is None or not near.moves or far.moves:
             return None
-        last: _Row | None = None
-        for k in range(_MOST_ROWS):
-            width = far.value - near.value
-            if abs(width) <= _PRECISE * max(abs(far.value), abs(near.value)):
+        for _ in range(_MOST_ROWS):
+            if abs(far.value - near.value) <= _PRECISE * max(abs(far.value), abs(near.value)):
                 break
-            row = self.at(_aim(near, far, last, beyond=k % 2 == 1))
+            row = self.at(0.5 * (near.value + far.value))
             if row is None:
                 return None
-            if row.moves:
-                near, last = row, near
-            else:
-                far = row
+            near, far = (row, far) if row.moves else (near, row)
         # rows near the stall are too ill-conditioned to be proved: step back from it
         width = near.value - far.value
         ends = self._proved(near, moving, width), self._proved(far, locked, -width)
@@ -416,15 +406,3 @@ class _Search:
                 return None
             row = found
         return row.value
-
-
-def _aim(near: _Row, far: _Row, last: _Row | None, *, beyond: bool) -> float:
-    """Where to look next: around the zero of the ease, which a secant finds, or halfway."""
-    middle = (near.value + far.value) / 2.0
-    if last is None or near.ease == last.ease or not math.isfinite(near.ease + last.ease):
-        return middle
-    zero = near.value - near.ease * (near.value - last.value) / (near.ease - last.ease)
-    way = zero - near.value
-    value = zero + _BESIDE * way * (1.0 if beyond else -1.0)
-    inside = min(near.value, far.value) < value < max(near.value, far.value)
-    return value if inside else middle

@@ -299,21 +299,22 @@ def solve_forces(model: Model, solved: Solved) -> ForceRows:
                 apply_load(load, applied)
             bodies = read_bodies(geometry, applied)
         by_work, largest = efforts(applied)
-        found = _Solution(geometry, applied, _has_rates(by_work, geometry))
+        # rates at a dead point are infinite, or huge if the row misses it by rounding
+        has_rates = (geometry.fastest < _UNBOUNDED) & np.isfinite(by_work).all(axis=0)
+        found = _Solution(geometry, applied, has_rates)
         stopped = undetermined_stops(geometry, bodies)
         found.regular &= ~stopped
-        if bodies is not None:
-            by_work = by_work + stop_efforts(bodies)
         zero = np.zeros_like(by_work)
         rubbing = FrictionEfforts(
             efforts=zero, largest=zero, doubt=np.zeros(geometry.rows, dtype=bool)
         )
+        drives: list[str] = []
         if bodies is not None:
+            by_work = by_work + stop_efforts(bodies)
             rubbing = _add_reactions(found, bodies)
-        drives = [] if bodies is None else [effort_name(i.column) for i in bodies.linkage.inputs]
+            drives = [effort_name(which.column) for which in bodies.linkage.inputs]
         _add_efforts(found, by_work, largest, drives, rubbing)
-        rubs = bodies is not None and any(own.motion is not None for own in bodies.following)
-        if bodies is not None and rubs and len(by_work):
+        if bodies is not None and bodies.rubs and len(by_work):
             _add_losses(found, by_work, largest, rubbing)
             if not applied.rate:
                 _add_backward(found, bodies, by_work)
@@ -324,7 +325,11 @@ def solve_forces(model: Model, solved: Solved) -> ForceRows:
         for name, kind, about, value in totals(geometry, applied):
             point, pushed, _ = name.partition(".load.")
             found.add(name, kind, about, value, pin=(point, "", "") if pushed else ())
-    lost = ~np.isfinite(next(iter(_anything(geometry))))
+    moving = [p for p in geometry.points if p not in geometry.model.equations.fixed]
+    # rows without a position have no place of any point
+    lost = np.zeros(geometry.rows, dtype=bool)
+    if moving:
+        lost = ~np.isfinite(np.abs(geometry.place(moving[0]).v))
     status = np.where(found.regular, ForceStatus.FOUND.code, ForceStatus.NO_RATES.code)
     undefined = {formula: rows & ~lost for formula, rows in applied.undefined.items()}
     for rows in undefined.values():
@@ -340,20 +345,6 @@ def solve_forces(model: Model, solved: Solved) -> ForceRows:
     )
 
 
-def _anything(geometry: Geometry) -> Iterator[Array]:
-    for point in geometry.points:
-        if point not in geometry.model.equations.fixed:
-            yield np.abs(geometry.place(point).v)
-    yield np.zeros(geometry.rows)
-
-
-def _has_rates(by_work: Array, geometry: Geometry) -> BoolArray:
-    """Rows in which the input moves the mechanism at a finite rate."""
-    # rates at a dead point are infinite, or huge if the row misses it by rounding
-    found: BoolArray = (geometry.fastest < _UNBOUNDED) & np.isfinite(by_work).all(axis=0)
-    return found
-
-
 def _add_reactions(found: _Solution, bodies: FreeBodies) -> FrictionEfforts:
     """All readings, from the unknowns and what follows from them."""
     # the same acts serve both ways
@@ -366,7 +357,7 @@ def _add_reactions(found: _Solution, bodies: FreeBodies) -> FrictionEfforts:
     found.locked = found.regular & ~forces.found
     found.regular &= forces.found
     found.proved = forces.proved
-    if any(own.motion is not None for own in bodies.following):
+    if bodies.rubs:
         found.held = found.regular & _held(bodies.geometry)
         found.regular &= ~found.held
     read_first_links(bodies, [*acts, *forces.acts()])

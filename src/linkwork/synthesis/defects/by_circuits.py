@@ -8,14 +8,10 @@ from itertools import combinations, product
 
 import numpy as np
 
+from linkwork.circuits.arcs import is_regular
 from linkwork.circuits.assembling import Assemblies, positions_at
 from linkwork.circuits.branches import CurveBranch
-from linkwork.circuits.followed_circuit import (
-    FollowedCircuit,
-    explorer_of,
-    is_regular,
-    straight_way,
-)
+from linkwork.circuits.followed_circuit import FollowedCircuit, explorer_of, straight_way
 from linkwork.core.foundation.arrays import Array, ComplexArray
 from linkwork.core.foundation.errors import InputError
 from linkwork.core.foundation.statuses import Completeness

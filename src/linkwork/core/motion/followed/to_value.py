@@ -100,7 +100,9 @@ def _on_branch(
         reasons = {limit.status for limit in limits}
         status = reasons.pop() if len(reasons) == 1 else limits[0].status
         way = (path, drive.lead, goal)
-        failure = wings.use("circuits.failure").beyond_reach(model, first.v, way, status, limits)
+        failure = wings.use("circuits.failure.failing").beyond_reach(
+            model, first.v, way, status, limits
+        )
         return OutOfReach(status=status, failure=failure)
     rows = rows_on_track(solver, path, track, np.array([t]))
     asked = (asked * model.input_scale)[None, :]
