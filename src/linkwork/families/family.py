@@ -25,17 +25,13 @@ from linkwork.families.family_motion import FamilyMotion
 #: Modules that are compiled when they are loaded, those first that others need; each with its share
 #: of the time.
 _MODULES = {
-    "program.interpreter": 0.09,
-    "march.named_trial": 0.08,
-    "march.start_positions": 0.08,
-    "march.position_programs": 0.01,
-    "march.independent": 0.13,
-    "march.lockstep": 0.13,
-    "march.rowwise": 0.24,
-    "paths.lane_paths": 0.09,
-    "single.compiled_rows": 0.08,
+    "compiled.interpreter": 0.1,
+    "march.step_trial": 0.25,
+    "march.independent": 0.2,
+    "march.lockstep": 0.2,
+    "paths.path_kernel": 0.15,
 }
-_DESIGNS = 17  # more than march row after row
+_DESIGNS = 5  # more than march row after row
 
 
 def compile_kernels(progress: Callable[[float], None] | None = None) -> None:
@@ -57,7 +53,7 @@ def compile_kernels(progress: Callable[[float], None] | None = None) -> None:
     check_flags(progress)
     done = 0.0
     for module, share in _MODULES.items():
-        import_module(f"linkwork.core.table.{module}")
+        import_module(f"linkwork.families.{module}")
         done += share
         if progress is not None:
             progress(done)

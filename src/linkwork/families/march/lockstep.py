@@ -40,7 +40,7 @@ from linkwork.families.march.step_trial import (
     update_weights,
 )
 
-say_that_it_compiles("lockstep")
+say_that_it_compiles("march.lockstep")
 
 _LINE = 64  # bytes of a cache line
 _LARGEST = 0.5  # of the largest step: further apart, rows have nodes between them
