@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 import sys
 import time
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from pathlib import Path
 from time import monotonic
@@ -92,24 +92,23 @@ def _counts(found: studies.Summary) -> Iterator[tuple[str, str]]:
     yield "passed", _of(found.passed, found.computed)
 
 
-def _chunks(which: tuple[int | str, ...]) -> str:
-    """Names of chunks and files, the first few of them."""
-    named = [x if isinstance(x, str) else f"chunk {x}" for x in which[:_MOST_PROBLEMS]]
-    more = len(which) - len(named)
-    return ", ".join(named) + (f" and {more:,} more" if more else "")
+def _chunks(which: tuple[int, ...]) -> str:
+    return _first_few([f"chunk {k}" for k in which])
+
+
+def _first_few(names: Sequence[str]) -> str:
+    more = len(names) - _MOST_PROBLEMS
+    return ", ".join(names[:_MOST_PROBLEMS]) + (f" and {more:,} more" if more > 0 else "")
 
 
 def verification_lines(found: studies.Verification, store: str) -> list[str]:
     """The page of a comparison of a store with its checksums."""
     if found.intact:
         return [f"All {found.sound:,} chunks of {store} are as they were written."]
-    damaged = {"metadata": found.metadata} if found.metadata else {}
-    damaged |= {f"chunk {chunk}": files for chunk, files in found.chunks.items()}
-    names = dict.fromkeys(damaged, bad)
-    pairs = ((name, _chunks(files)) for name, files in damaged.items())
+    damaged = {f"chunk {chunk}": _first_few(files) for chunk, files in found.chunks.items()}
     return [
         *title_lines(f"{store} is damaged"),
-        *fields(pairs, names),
+        *fields(damaged.items(), dict.fromkeys(damaged, bad)),
         *sentence(
             str,
             f"{found.sound:,} chunks are as they were written. To repair the others, repeat the "

@@ -524,7 +524,7 @@ _CHUNK_BYTES = 64 << 20  # target size of the arrays of one chunk
 _CHUNKS_WANTED = 16  # chunks of a small study, for several workers
 
 
-@dataclass(frozen=True, kw_only=True)
+@dataclass(frozen=True)
 class Variable:
     """An array of the store: over designs, over designs and inputs, or over inputs alone.
 
@@ -533,9 +533,9 @@ class Variable:
 
     name: str
     axes: tuple[str, ...]
-    dtype: str
-    fill: Any
     attributes: Mapping[str, Any]
+    dtype: str = "float64"
+    fill: Any = np.nan
     values: Array | None = None
 
 
@@ -618,75 +618,44 @@ class Study:
     @cached_property
     def variables(self) -> tuple[Variable, ...]:
         """Every array of the store."""
-        of_input = [
-            self._variable(
-                name, (self.inputs[0],), "float64", np.nan, self.model.input_units[name], values
-            )
-            for name, values in zip(self.inputs, self.model.rows_in_file_units.T, strict=True)
-        ]
-        varied = [
-            self._variable(name, (DESIGN,), "float64", np.nan, self._unit_of_number(name))
-            for name in self.plan
-        ]
-        return (*of_input, *varied, *self._of_design(), *self._of_rows())
-
-    def _of_design(self) -> list[Variable]:
-        """One number for each design."""
-        one = (DESIGN,)
-        found = [
-            self._variable("built", one, "bool", False, about="whether the design can be built"),
-            self._variable("found", one, "int32", -1, about="rows with a position"),
-            self._variable("certified", one, "int32", -1, about="rows that are proved"),
-            self._variable("passed", one, "bool", False, about="built, and passed every filter"),
-        ]
+        one, lead = (DESIGN,), self.inputs[:1]
+        inputs = zip(self.inputs, self.model.rows_in_file_units.T, strict=True)
+        units = self.model.input_units
+        found = [Variable(x, lead, _about(units[x]), values=values) for x, values in inputs]
+        found += [Variable(name, one, _about(self._unit_of_number(name))) for name in self.plan]
+        truths = {
+            "built": "whether the design can be built",
+            "passed": "built, and passed every filter",
+            **{passes_name(name): str(x) for name, x in self.job.filters.items()},
+        }
+        counts = {"found": "rows with a position", "certified": "rows that are proved"}
+        found += [Variable(name, one, _about("", x), "bool", False) for name, x in truths.items()]
+        found += [Variable(name, one, _about("", x), "int32", -1) for name, x in counts.items()]
         found += [
-            self._variable(passes_name(name), one, "bool", False, about=str(condition))
-            for name, condition in self.job.filters.items()
-        ]
-        return found + [
-            self._variable(name, one, "float64", np.nan, self.units[name], about=str(reduced))
+            Variable(name, one, _about(self.units[name], str(reduced)))
             for name, reduced in self.job.reductions.items()
         ]
-
-    def _of_rows(self) -> list[Variable]:
-        """One number for each design and input."""
         if not self.job.keep:
-            return []
-        axes = (DESIGN, self.inputs[0])
+            return tuple(found)
+        axes = (DESIGN, *lead)
         note = "missing where there is no position or the design did not pass"
-        found = [
-            self._variable(name, axes, "float64", np.nan, self.units[name], about=note)
-            for name in self.job.keep
-        ]
-        flags = {
+        found += [Variable(name, axes, _about(self.units[name], note)) for name in self.job.keep]
+        codes = {
             "flag_values": [status.code for status in Status],
             "flag_meanings": " ".join(status.name for status in Status),
         }
-        return [
-            *found,
-            Variable(name="status", axes=axes, dtype="int8", fill=-1, attributes=flags),
-        ]
-
-    def _variable(
-        self,
-        name: str,
-        axes: tuple[str, ...],
-        dtype: str,
-        fill: Any,
-        unit: str = "",
-        values: Array | None = None,
-        about: str = "",
-    ) -> Variable:
-        attributes = ({"units": unit} if unit else {}) | ({"description": about} if about else {})
-        return Variable(
-            name=name, axes=axes, dtype=dtype, fill=fill, attributes=attributes, values=values
-        )
+        return (*found, Variable("status", axes, codes, "int8", -1))
 
     def _unit_of_number(self, name: str) -> str:
         table = number_named(self.job.description, name).table
         if table in ("lengths", "points", "sliders"):
             return self.job.description.length
         return self.job.description.angle.value if table == "angles" else ""
+
+
+def _about(unit: str, description: str = "") -> dict[str, str]:
+    """The attributes of an array."""
+    return ({"units": unit} if unit else {}) | ({"description": description} if description else {})
 
 
 def usual_chunk(count: int, rows: int, columns: int) -> int:
