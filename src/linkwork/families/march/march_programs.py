@@ -40,8 +40,10 @@ from linkwork.core.record.closure import (
     Closure,
     Phase,
     cosine_and_sine,
+    driven,
     phasor_name,
     solve_linear,
+    weight_of,
 )
 from linkwork.core.record.printing import Body, Language
 from linkwork.core.record.recorder import (
@@ -86,6 +88,8 @@ class Steps:
         )
 
 
+#: Numbers of :class:`Steps` that programs read.
+OPTIONS = ("tolerance", "most_turn", "most_correction", "most_drift")
 NODES = ROLES - 1  # that a prediction can use
 #: Registers of the weights of nodes' values and derivatives in a prediction.
 WEIGHTS = tuple(f"{name}{role}" for role in range(1, ROLES) for name in "ab")
@@ -154,10 +158,6 @@ class _MarchWriter:
         own = [rec.input("t.0")] if self.alone else [rec.input(f"u{j}.0") for j in inputs]
         return [*[rec.input(f"x{k}.0") for k in range(self.n)], *own]
 
-    def _scale(self, rec: Recorder, k: int) -> Value:
-        """The weight of a variable: 1 for angles."""
-        return rec.constant(1.0) if self.table.is_angle[k] else rec.input(f"scale{k}")
-
     def _rate(self, rec: Recorder, j: int) -> Value:
         """By how much an input changes with t."""
         return rec.constant(1.0) if self.alone else rec.input(f"u{j}.rate")
@@ -168,7 +168,7 @@ class _MarchWriter:
 
     def _weigh(self, rec: Recorder, k: int, change: Value) -> Value:
         """|change| of a variable in its weight."""
-        return rec.divide(rec.absolute(change), self._scale(rec, k))
+        return rec.divide(rec.absolute(change), weight_of(rec, self.table, k))
 
     def _closure(self, number: int, rec: Recorder) -> Closure:
         part = self.parts[number]
@@ -214,7 +214,8 @@ class _MarchWriter:
         closure = self._closure(number, rec)
         matrix, sides = closure.jacobian(part.unknowns), [closure.residual()]
         if not self.certified:
-            sides.append(self._drives(closure, rec))  # eq. (11), right side
+            rates = {k: self._rate_of_known(rec, k) for k in closure.known()}
+            sides.append(driven(closure, rates))  # eq. (11), right side
         answer = solve_linear(rec, matrix, sides)
         change, live = answer.columns[0], rec.input(f"live{number}.0")
         turns = [
@@ -261,21 +262,11 @@ class _MarchWriter:
         (more,) = solve_linear(rec, matrix, [closure.bending(correction, rates)]).columns
         return [rec.subtract(rates[k], m) for k, m in zip(unknowns, more, strict=True)]
 
-    def _drives(self, closure: Closure, rec: Recorder) -> list[Value]:
-        """F_k times the rates of the known variables."""
-        known = closure.known()
-        rates = [self._rate_of_known(rec, k) for k in known]
-        return [
-            rec.total([rec.multiply(x, rate) for x, rate in zip(row, rates, strict=True)])
-            for row in closure.jacobian(known)
-        ]
-
     def prove(self, number: int) -> Recorder:
         """A block's proof: of the trial, and that it lies on the branch of the last node."""
         part, rec = self.parts[number], Recorder()
         closure = self._closure(number, rec)
-        used = (*part.unknowns, *closure.known())
-        proof = BlockProof(closure, {k: self._scale(rec, k) for k in used})
+        proof = BlockProof(closure)
         near: dict[int, Value] = {}
         far: dict[int, Value] = {}
         # the factor covers the rounding of the difference and of the inputs at both ends

@@ -19,7 +19,7 @@ from linkwork.families import march as loops
 from linkwork.families.compiled.code_cache import is_cached, load_compiled
 from linkwork.families.compiled.execution import Execution
 from linkwork.families.march.dead_points import LastNodes
-from linkwork.families.march.march_programs import WEIGHTS, Steps, march_programs
+from linkwork.families.march.march_programs import OPTIONS, WEIGHTS, Steps, march_programs
 from linkwork.families.march.step_trial import InputTable, MarchResult, Tasks, Topology, begin
 
 MOST_DESIGNS = 4096  # designs that one thread works on at a time, at most
@@ -214,7 +214,7 @@ class SweepKernel:
         blank = self._blank
         if blank is None or blank[0] != steps:
             space = self.registers.filled(self.height, LANES)
-            for name in ("tolerance", "most_turn", "most_correction", "most_drift"):
+            for name in OPTIONS:
                 if name in self.registers.named:
                     space[self.registers.named[name]] = getattr(steps, name)
             blank = self._blank = steps, space
