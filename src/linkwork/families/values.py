@@ -65,14 +65,6 @@ class DesignRates:
         )
 
 
-@dataclass(frozen=True, kw_only=True, eq=False)
-class DesignEvidence:
-    """``condition``, ``residual`` (R, D), as for a motion; NaN without a position."""
-
-    condition: Array
-    residual: Array
-
-
 def design_rates(designs: Designs, rows: DesignRows, threads: int = 1) -> DesignRates:
     """The rates of all unknowns, computed for all designs together by a compiled program.
 
@@ -103,8 +95,8 @@ def design_rates(designs: Designs, rows: DesignRows, threads: int = 1) -> Design
     return DesignRates(first=both[0], second=both[1], driven=driven)
 
 
-def design_evidence(designs: Designs, rows: DesignRows, threads: int = 1) -> DesignEvidence:
-    """Condition number and residual of every position."""
+def design_evidence(designs: Designs, rows: DesignRows, threads: int = 1) -> tuple[Array, Array]:
+    """Condition number and residual of every position, (R, D) each; NaN without one."""
     condition, residual = np.full((2, *rows.v.shape[1:]), np.nan)
     if _together(designs, rows):
         reading, lengths = PlaceReading.of(designs), lines_of_lengths(designs.base)
@@ -117,7 +109,7 @@ def design_evidence(designs: Designs, rows: DesignRows, threads: int = 1) -> Des
         condition[~found] = residual[~found] = np.nan
     for k, own in rows.own.items():
         condition[:, k], residual[:, k] = own.condition, own.residual
-    return DesignEvidence(condition=condition, residual=residual)
+    return condition, residual
 
 
 def _together(designs: Designs, rows: DesignRows) -> bool:

@@ -201,36 +201,6 @@ _DOES = {
 }
 
 
-@dataclass(frozen=True)
-class Choice:
-    """Equally likely values."""
-
-    values: tuple[float, ...]
-
-    def __call__(self, generator: np.random.Generator, count: int) -> Array:
-        drawn: Array = np.array(self.values)[generator.integers(len(self.values), size=count)]
-        return drawn
-
-
-@dataclass(frozen=True)
-class Triangular:
-    """A triangular distribution from ``low`` to ``high`` with its peak at ``likeliest``."""
-
-    low: float
-    likeliest: float
-    high: float
-
-    def __post_init__(self) -> None:
-        if not self.low <= self.likeliest <= self.high or self.low == self.high:
-            raise InputError(
-                "a triangle needs from <= likeliest <= to and from < to, "
-                f"got {self.low:g}, {self.likeliest:g}, {self.high:g}"
-            )
-
-    def __call__(self, generator: np.random.Generator, count: int) -> Array:
-        return generator.triangular(self.low, self.likeliest, self.high, count)
-
-
 def choose_values(
     content: Mapping[str, Any], folder: Path, problems: Problems
 ) -> tuple[Plan, Mapping[str, float]] | None:
@@ -257,7 +227,7 @@ def choose_values(
     varied = {name: entry for name, entry in given.items() if name not in constants}
     read = {
         "grid": _levels,
-        "random": _distribution,
+        "random": read_distribution,
         "latin-hypercube": _range,
         "table": _nothing,
     }[sampling]
@@ -354,13 +324,21 @@ def _levels(entry: Any) -> Array | None:
     return np.linspace(low, high, entry["levels"])
 
 
-def _distribution(entry: Any) -> Distribution | None:
+def read_distribution(entry: Any) -> Distribution | None:
+    """What an entry of random designs is drawn from; ``None`` if it is none of these."""
     if isinstance(entry, list):
-        return Choice(tuple(map(float, entry)))
+        values = np.array(entry, dtype=float)
+        return lambda generator, count: values[generator.integers(len(values), size=count)]
     if set(entry) == _RANGE:
         return Uniform(*_ends(entry))
     if set(entry) == _TRIANGLE:
-        return Triangular(float(entry["from"]), float(entry["likeliest"]), float(entry["to"]))
+        low, peak, high = (float(entry[key]) for key in ("from", "likeliest", "to"))
+        if not low <= peak <= high or low == high:
+            raise InputError(
+                "a triangle needs from <= likeliest <= to and from < to, "
+                f"got {low:g}, {peak:g}, {high:g}"
+            )
+        return lambda generator, count: generator.triangular(low, peak, high, count)
     if set(entry) == _NORMAL:
         return Normal(float(entry["mean"]), float(entry["deviation"]))
     return None
