@@ -344,7 +344,7 @@ def _proved_here(
             put(f"e{k}.1", space[reg.named[f"e{k}.0"], :count])
         put("t.0", at[:, n])
         put("t.1", before[:, n])
-        for program in (programs.given, *programs.prove, programs.judge):
+        for program in (p for kind in ("given", "prove", "judge") for p in programs.by_kind[kind]):
             run(program.code, space)
         own = space[reg.named["good.0"], :count] > 0.5
         if at is node:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Any
@@ -42,7 +42,6 @@ _NEAR = 1 << 16  # positions whose rates are computed at a time: temporaries fit
     "rows",
     "quantities",
     "quantity",
-    "check_names",
     "leading",
     "threads",
     "unit",
@@ -139,21 +138,6 @@ class FamilyMotion:
             )
         asked.check_rate(self.speed if asked.rate and asked.rate.by_time else None)
         return asked
-
-    def check_names(self, names: Iterable[str]) -> None:
-        """Raise an error for unknown names, before any computation.
-
-        Parameters
-        ----------
-        names : iterable of str
-
-        Raises
-        ------
-        UnknownNameError
-            Lists the nearest names.
-        """
-        for name in names:
-            self.quantity(name)
 
     def __getitem__(self, name: str) -> Array:
         """Values of a quantity by name, (D, R), file units; NaN where there is no position.
@@ -344,7 +328,8 @@ class FamilyMotion:
         """
         with installed_with("tables", "labelled arrays need xarray"):
             import xarray
-        self.check_names(names)
+        for name in names:  # before any computation
+            self.quantity(name)
         model = self.designs.base
         lead = model.equations.inputs[0].name
         axes = ("design", lead)

@@ -120,11 +120,7 @@ def is_cached(source: str) -> bool:
 
 
 def _path(name: str) -> Path:
-    return _folder() / f"{name.rpartition('.')[2]}.py"
-
-
-def _folder() -> Path:
-    return cache_folder("kernels")
+    return cache_folder("kernels") / f"{name}.py"
 
 
 def _name(source: str) -> str:

@@ -152,12 +152,13 @@ def device_source(programs: MarchPrograms, state: ThreadState, certified: bool) 
     numbers = "".join(f"{name}={number}, " for name, number in sizes.items())
     shape = f"Shape({numbers}certified={certified})"
     live = [state.place[named[f"live{b}.0"]] for b in range(state.blocks)]
+    proofs = [f"prove{b}(w)" for b in range(len(programs.by_kind["prove"]))]
     functions = [
         *(f"@on_device\n{text}" for text in printed_sections(programs, state, PYTHON)),
         _function("predict", ["reach(w)", "given(w)"]),
         _function("correct", *map(_newton, range(state.blocks), live)),
         _function("correct_slowly", *map(_slowly, range(state.blocks), live)),
-        _function("judge", [f"prove{b}(w)" for b in range(len(programs.prove))], ["agree(w)"]),
+        _function("judge", proofs, ["agree(w)"]),
     ]
     kernels = _KERNELS.format(shape=shape, length=len(state.place))
     return "\n\n".join([_HEAD, *functions, kernels])
@@ -277,9 +278,8 @@ class DeviceKernel(SweepKernel):
         for j, name in enumerate(self.state.coefficients):
             design[j, :count] = coefficients[name][part]
         nodes[:, :count] = given
-        sizes = np.array([steps.first, steps.largest, steps.smallest])
         options = np.array([getattr(steps, name) for name in self.state.options])
-        values = (design, nodes, np.ascontiguousarray(rows), sizes, options)
+        values = (design, nodes, np.ascontiguousarray(rows), steps.sizes, options)
         for array, value in zip(chunk.inputs.values(), values, strict=True):
             array.copy_to_device(value, stream=chunk.stream)
 

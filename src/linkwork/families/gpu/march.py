@@ -22,17 +22,7 @@ from collections.abc import Callable
 from typing import NamedTuple
 
 from linkwork.core.foundation.arrays import Array, BoolArray
-from linkwork.core.numerics.marching import (
-    HALF,
-    aim,
-    grow,
-    hermite_weights,
-    is_lost,
-    is_same_spacing,
-    keep_spacing,
-    stride,
-    trusted_nodes,
-)
+from linkwork.core.numerics import marching
 from linkwork.core.record.recorder import ROLES
 from linkwork.families.compiled.interpreter import sin_cos as sine_sin_cos
 from linkwork.families.gpu.kernel import kernel, numba_cuda, on_device
@@ -55,14 +45,15 @@ __all__ = [
 
 cuda = numba_cuda()
 sin_cos = on_device(sine_sin_cos.py_func)
-_aim = on_device(aim)
-_stride = on_device(stride)
-_is_lost = on_device(is_lost)
-_grow = on_device(grow)
-_trusted_nodes = on_device(trusted_nodes)
-_hermite_weights = on_device(hermite_weights)
-_is_same_spacing = on_device(is_same_spacing)
-_keep_spacing = on_device(keep_spacing)
+_aim = on_device(marching.aim)
+_stride = on_device(marching.stride)
+_is_lost = on_device(marching.is_lost)
+_grow = on_device(marching.grow)
+_trusted_nodes = on_device(marching.trusted_nodes)
+_hermite_weights = on_device(marching.hermite_weights)
+_is_same_spacing = on_device(marching.is_same_spacing)
+_keep_spacing = on_device(marching.keep_spacing)
+_HALF = marching.HALF
 _row_from = on_device(row_from.py_func)
 
 
@@ -246,7 +237,7 @@ def follow(
                 for j in range(NODES * size - 1, -1, -1):
                     w[size + j] = w[j]
         else:
-            h = HALF * moved  # eq. (22): halved after a failure
+            h = _HALF * moved  # eq. (22): halved after a failure
             if h < steps[2]:
                 _stop(shape, w, way, found)
                 return

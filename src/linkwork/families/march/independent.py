@@ -17,7 +17,7 @@ from linkwork.core.foundation.arrays import Array, IndexArray
 from linkwork.core.numerics.marching import HALF
 from linkwork.core.record.recorder import LANES, ROLES
 from linkwork.families.compiled.code_cache import say_that_it_compiles
-from linkwork.families.compiled.compiling import compiled_for, njit_no_refcount, types
+from linkwork.families.compiled.compiling import compiled_for, njit_no_refcount, numbers, types
 from linkwork.families.march.march_programs import NODES
 from linkwork.families.march.step_trial import (
     GOOD,
@@ -164,11 +164,8 @@ def _take_or_halve_step(
 
 
 @compiled_for(
-    types.void(
-        TOPOLOGY, types.Array(types.float64, 2, "C"),
-        types.Array(types.float64, 2, "C"), INPUT_TABLE, TASKS, types.int64, MARCH_RESULT,
-    )
-)  # fmt: skip
+    types.void(TOPOLOGY, numbers(2), numbers(2), INPUT_TABLE, TASKS, types.int64, MARCH_RESULT)
+)
 def march(
     topology: Topology,
     w: Array,

@@ -8,16 +8,7 @@ from typing import NamedTuple
 import numpy as np
 
 from linkwork.core.foundation.arrays import Array, BoolArray, IndexArray
-from linkwork.core.numerics.marching import (
-    aim as step_size_aim,
-    grow as step_size_grow,
-    hermite_weights as prediction_hermite_weights,
-    is_lost as step_size_is_lost,
-    is_same_spacing as prediction_is_same_spacing,
-    keep_spacing as prediction_keep_spacing,
-    stride as step_size_stride,
-    trusted_nodes as prediction_trusted_nodes,
-)
+from linkwork.core.numerics import marching
 from linkwork.core.record.recorder import LANES, ROLES, Code
 from linkwork.families.compiled.compiling import (
     call_at,
@@ -27,19 +18,22 @@ from linkwork.families.compiled.compiling import (
     inlined,
     named_tuple,
     njit_no_refcount,
+    numbers,
+    truths,
     types,
+    wholes,
 )
 from linkwork.families.compiled.interpreter import FIELDS, HIGH, run_part
 from linkwork.families.march.march_programs import START_STEPS, STEPS
 
-aim = njit_no_refcount(step_size_aim)
-stride = njit_no_refcount(step_size_stride)
-is_lost = njit_no_refcount(step_size_is_lost)
-grow = njit_no_refcount(step_size_grow)
-trusted_nodes = njit_no_refcount(prediction_trusted_nodes)
-hermite_weights = njit_no_refcount(prediction_hermite_weights)
-is_same_spacing = njit_no_refcount(prediction_is_same_spacing)
-keep_spacing = njit_no_refcount(prediction_keep_spacing)
+aim = njit_no_refcount(marching.aim)
+stride = njit_no_refcount(marching.stride)
+is_lost = njit_no_refcount(marching.is_lost)
+grow = njit_no_refcount(marching.grow)
+trusted_nodes = njit_no_refcount(marching.trusted_nodes)
+hermite_weights = njit_no_refcount(marching.hermite_weights)
+is_same_spacing = njit_no_refcount(marching.is_same_spacing)
+keep_spacing = njit_no_refcount(marching.keep_spacing)
 
 
 @njit_no_refcount
@@ -111,28 +105,11 @@ class MarchResult(NamedTuple):
     last: Array
 
 
-INPUT_TABLE = named_tuple(
-    [types.Array(types.float64, 1, "C"), types.Array(types.float64, 1, "C"), types.int64],
-    InputTable,
-)
-TASKS = named_tuple(
-    [
-        types.Array(types.int64, 1, "C"),
-        types.Array(types.int64, 1, "C"),
-        types.Array(types.float64, 2, "C"),
-    ],
-    Tasks,
-)
+CODE = types.Array(types.uint32, 2, "C")
+INPUT_TABLE = named_tuple([numbers(1), numbers(1), types.int64], InputTable)
+TASKS = named_tuple([wholes(1), wholes(1), numbers(2)], Tasks)
 MARCH_RESULT = named_tuple(
-    [
-        types.int64,
-        types.Array(types.float64, 3, "C"),
-        types.Array(types.float64, 2, "C"),
-        types.Array(types.boolean, 2, "C"),
-        types.Array(types.float64, 2, "C"),
-        types.Array(types.float64, 3, "C"),
-    ],
-    MarchResult,
+    [types.int64, numbers(3), numbers(2), truths(2), numbers(2), numbers(3)], MarchResult
 )
 
 
@@ -180,18 +157,11 @@ class Topology(NamedTuple):
 
 TOPOLOGY = named_tuple(
     [
-        types.Array(types.uint32, 2, "C"),
-        types.int64,
-        types.Array(types.int64, 2, "C"),
-        types.Array(types.int64, 1, "C"),
-        types.Array(types.int64, 2, "C"),
-        types.Array(types.int64, 1, "C"),
-        types.Array(types.int64, 1, "C"),
-        types.Array(types.int64, 1, "C"),
+        CODE, types.int64, wholes(2), wholes(1), wholes(2), wholes(1), wholes(1), wholes(1),
         types.int64,
     ],
     Topology,
-)
+)  # fmt: skip
 
 
 @inlined
@@ -482,12 +452,7 @@ def correct_and_judge(
 # Where motions begin: every mechanism solved at the input of its guess.
 
 
-_PLAIN = types.Array(types.float64, 2, "C")
-
-
-@compiled_for(
-    types.void(TOPOLOGY, _PLAIN, _PLAIN, _PLAIN, _PLAIN, types.Array(types.boolean, 1, "C"))
-)
+@compiled_for(types.void(TOPOLOGY, numbers(2), numbers(2), numbers(2), numbers(2), truths(1)))
 def begin(
     topology: Topology, w: Array, design: Array, guess: Array, node: Array, found: BoolArray
 ) -> None:

@@ -124,9 +124,9 @@ class SweepKernel:
 
     def source(self) -> str:
         """A trial of this topology written out: prediction, one correction, proof, judgement."""
-        sections = self._sections
-        ordered = [sections.predict, *sections.begin, *sections.prove, sections.judge]
-        after = [*sections.iterate, *sections.prove, sections.judge]
+        kinds = self._sections.by_kind
+        ordered = [p for kind in ("predict", "begin", "prove", "judge") for p in kinds[kind]]
+        after = [p for kind in ("iterate", "prove", "judge") for p in kinds[kind]]
         kept = {*self.nodes[0].tolist(), *self.noted.tolist(), *registers_read(after)}
         return trial_source(
             [section.code for section in ordered],
@@ -164,8 +164,11 @@ class SweepKernel:
             Designs whose start was found.
         """
         count, given = len(start), self.guess_nodes(guess, start)
-        places, design = self._coefficient_registers(coefficients, count)
-        topology, table = self._topology(places), self._table(rows, steps)
+        named = self.registers.named
+        used = [name for name in coefficients if name in named]
+        design = np.array([coefficients[name] for name in used]).reshape(len(used), count)
+        topology = self._topology(np.array([named[name] for name in used], dtype=np.intp))
+        table = InputTable(rows, steps.sizes, self.table.unknowns)
         begun = np.zeros(count, dtype=bool)
 
         def one(part: slice) -> None:
@@ -198,15 +201,6 @@ class SweepKernel:
         q, p = (last[self.nodes.shape[1] :][k * n : (k + 1) * n] for k in range(2))
         errors = x if self.certified else np.zeros_like(w)
         return LastNodes(t=found.end[way, where], w=w, s=s, q=q, p=p, x=errors)
-
-    def _coefficient_registers(
-        self, coefficients: Mapping[str, Array], count: int
-    ) -> tuple[IndexArray, Array]:
-        """Registers (C,) of the coefficients that programs use, and their values (C, D)."""
-        named = self.registers.named
-        used = [name for name in coefficients if name in named]
-        values = np.array([coefficients[name] for name in used]).reshape(len(used), count)
-        return np.array([named[name] for name in used], dtype=np.intp), values
 
     def workspace(self, steps: Steps) -> Array:
         """A workspace with constants and options in place."""
@@ -246,10 +240,6 @@ class SweepKernel:
         if left:
             loops.march(topology, space, design, table, tasks, left, found)
         return begun
-
-    def _table(self, rows: Array, steps: Steps) -> InputTable:
-        sizes = np.array([steps.first, steps.largest, steps.smallest])
-        return InputTable(rows, sizes, self.table.unknowns)
 
     def _topology(self, coefficients: IndexArray) -> Topology:
         return Topology(
