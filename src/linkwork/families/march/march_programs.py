@@ -206,8 +206,8 @@ class _MarchWriter:
         closure = self._closure(number, rec)
         matrix, sides = closure.jacobian(part.unknowns), [closure.residual()]
         if not self.certified:
-            rates = {k: self._rate_of_known(rec, k) for k in closure.known()}
-            sides.append(driven(closure, rates))  # eq. (11), right side
+            given = {k: self._rate_of_known(rec, k) for k in closure.known()}
+            sides.append(driven(closure, given))  # eq. (11), right side
         answer = solve_linear(rec, matrix, sides)
         change, live = answer.columns[0], rec.input(f"live{number}.0")
         turns = [

@@ -47,16 +47,17 @@ def at_places(
     design = np.array([coefficients[name] for name in used]).reshape(len(used), count)
     # a variable that the program does not use is loaded into a register of its own
     spare = max(reading.program.height, reading.registers.count)
+    places = np.array([named[name] for name in used], dtype=np.intp)
     variables = [named.get(f"v{k}", spare) for k in range(n + inputs.shape[1])]
-    registers = [np.array(own, dtype=np.intp) for own in ([named[x] for x in used], variables)]
     found = np.empty((len(reading.wanted), rows, count))
 
     def one(first: int) -> None:
         part = slice(first, first + _PART)
         _evaluate(
-            reading.program.code, reading.registers.filled(spare + 1, LANES), *registers,
-            np.ascontiguousarray(design[:, part]), v[:, :, part], inputs, turns[:, part],
-            reading.registers.all_of(reading.wanted), found[:, :, part],
+            reading.program.code, reading.registers.filled(spare + 1, LANES), places,
+            np.array(variables, dtype=np.intp), np.ascontiguousarray(design[:, part]),
+            v[:, :, part], inputs, turns[:, part], reading.registers.all_of(reading.wanted),
+            found[:, :, part],
         )  # fmt: skip
 
     firsts = range(0, count, _PART)

@@ -40,13 +40,15 @@ class ProcessExecutor(ThreadPoolExecutor):
         self._own = local()
         self._processes: list[subprocess.Popen[bytes]] = []
 
-    def submit(self, function: Callable[..., Result], /, *arguments: Any) -> Future[Result]:
+    def submit(
+        self, function: Callable[..., Result], /, *arguments: Any, **named: Any
+    ) -> Future[Result]:
         """The result of a call in a process.
 
         A :class:`LinkworkError` of the function becomes an :class:`InputError`, and so does the
         death of a process.
         """
-        future: Future[Result] = super().submit(self._result, (function, arguments))
+        future: Future[Result] = super().submit(self._result, (function, arguments, named))
         return future
 
     def shutdown(self, wait: bool = True, *, cancel_futures: bool = True) -> None:
@@ -103,9 +105,9 @@ def serve() -> None:
     os.dup2(sys.stderr.fileno(), sys.stdout.fileno())  # printed text must not enter the results
     with suppress(EOFError, BrokenPipeError, pickle.UnpicklingError):
         while True:
-            function, arguments = pickle.load(calls)
+            function, arguments, named = pickle.load(calls)
             try:
-                result = function(*arguments)
+                result = function(*arguments, **named)
             except LinkworkError as error:
                 result = InputError(str(error))
             pickle.dump(result, results, pickle.HIGHEST_PROTOCOL)
