@@ -24,15 +24,15 @@ os.environ.setdefault("MPLBACKEND", "Agg")  # inherited by the commands that tes
 
 #: Modules that are compiled as they are loaded: what all loops share, then halves of the work.
 _COMPILED = (
-    ("linkwork.families.march.one_design",),
-    ("linkwork.families.march.rowwise", "linkwork.families.march.lockstep"),
+    ("linkwork.families.march.step_trial",),
+    ("linkwork.families.march.lockstep",),
     ("linkwork.families.march.independent", "linkwork.families.march.rate_programs"),
 )
 
 
 def pytest_configure(config: pytest.Config) -> None:
     """Kernels are compiled before workers begin: each of them would compile all, for itself."""
-    if config.getoption("numprocesses", None) and not is_compiled("rowwise"):
+    if config.getoption("numprocesses", None) and not is_compiled("march.lockstep"):
         _compile(_COMPILED[:1])
         _compile(_COMPILED[1:])
 

@@ -6,7 +6,6 @@ from benchmarks.peers.casadi_newton import CasadiNewton
 from benchmarks.peers.exudyn_statics import ExudynStatics
 from benchmarks.peers.kinepy_groups import KinepyGroups
 from benchmarks.peers.linkwork_family import LinkworkFamily
-from benchmarks.peers.linkwork_kernel import LinkworkKernel
 from benchmarks.peers.linkwork_sweep import LinkworkSweep
 from benchmarks.peers.mechanism_package import MechanismPackage
 from benchmarks.peers.numpy_dyads import NumpyDyads
@@ -24,10 +23,6 @@ PEERS: tuple[Peer, ...] = (
     LinkworkFamily(certify=False),
     LinkworkFamily(certify=True, specialised=True),
     LinkworkFamily(certify=False, specialised=True),
-    LinkworkKernel(certify=True, compiled=True),
-    LinkworkKernel(certify=False, compiled=True),
-    LinkworkKernel(certify=True, compiled=False),
-    LinkworkKernel(certify=False, compiled=False),
     PylinkageStepFast(),
     PylinkageEnsemble(),
     NumpyDyads(),

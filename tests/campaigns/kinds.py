@@ -24,10 +24,7 @@ _STEP = 10
 def kind_campaign(
     part: int, count: int, step: int = _STEP, *, certify: bool = True
 ) -> tuple[Counter[str], list[str]]:
-    """So many designs of one kind, a tenth close to a change point; what is false.
-
-    With 16 designs or fewer and a ``step`` of at most 5 degrees rows go side by side.
-    """
+    """So many designs of one kind, a tenth close to a change point; what is false."""
     kind, rng = FAMILIES[part % len(FAMILIES)], np.random.default_rng([29, part])
     near = (rng.random(count) < 0.1) & (kind != "triad")
     gaps = np.where(near, 10.0 ** rng.uniform(-9, -3, count), np.nan)

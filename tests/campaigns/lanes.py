@@ -11,7 +11,7 @@ import numpy.typing as npt
 from linkwork.core.numerics.kantorovich import Bounds, Radii
 from linkwork.core.record.block_proof import BlockProof, BlockRadii
 from linkwork.core.record.closure import BlockPart, Closure
-from linkwork.core.record.recorder import LANES, Recorder, Value
+from linkwork.core.record.recorder import LANES, Recorder
 from linkwork.core.table.loop_table import LoopTable
 from linkwork.families.compiled.interpreter import run
 from linkwork.families.march.march_programs import MarchPrograms, march_programs
@@ -56,11 +56,7 @@ def claims(tables: list[LoopTable], v: Array, known: Array) -> LaneClaims:
     part = BlockPart(equations=equations, unknowns=tuple(range(n)))
     zeros = {name for name, values in given.items() if not values.any()}
     closure = Closure(table, part, rec, variables, zeros)
-
-    def scale(k: int) -> Value:
-        return rec.constant(1.0) if table.is_angle[k] else rec.input(f"scale{k}")
-
-    proof = BlockProof(closure, {k: scale(k) for k in range(count)})
+    proof = BlockProof(closure)
     spread = {k: rec.input(f"d{k}") for k in proof.known}
     for i, row in enumerate(proof.constants(spread)):
         for name, value in (("y", row.y), ("z", row.z), ("o", row.omega), ("b", row.bent)):
@@ -348,7 +344,7 @@ def _proved_here(
             put(f"e{k}.1", space[reg.named[f"e{k}.0"], :count])
         put("t.0", at[:, n])
         put("t.1", before[:, n])
-        for program in (programs.given, *programs.prove, programs.judge):
+        for program in (p for kind in ("given", "prove", "judge") for p in programs.by_kind[kind]):
             run(program.code, space)
         own = space[reg.named["good.0"], :count] > 0.5
         if at is node:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import io
 import json
 import os
 import subprocess
@@ -11,8 +10,6 @@ from pathlib import Path
 
 import pytest
 
-from linkwork.families.commands import progress_line, study_progress
-from linkwork.families.study import Progress
 from tests.batch.study.plans import PLAN, edited
 from tests.cli.conftest import Run
 
@@ -135,56 +132,6 @@ def test_a_plan_from_standard_input(run: Run) -> None:
 def test_what_cannot_be_done_is_said(words: tuple[str, ...], message: str, run: Run) -> None:
     done = run("study", *words)
     assert (done.exit_code, done.stdout, done.stderr) == (2, "", f"Error: {message}\n")
-
-
-@pytest.mark.parametrize(
-    ("progress", "line"),
-    [
-        (Progress(total=1_000_000, done=0, before=0, seconds=0.0), "  0 %  0 of 1,000,000 designs"),
-        (
-            Progress(total=1_000_000, done=250_000, before=50_000, seconds=10.0),
-            " 25 %  250,000 of 1,000,000 designs  20,000/s  0:38 left",
-        ),
-        (
-            Progress(total=1_000_000, done=1_000, before=0, seconds=10.0),
-            "  0 %  1,000 of 1,000,000 designs  100/s  2:46:30 left",
-        ),
-    ],
-)
-def test_the_line_of_progress_has_rate_and_time_left(progress: Progress, line: str) -> None:
-    assert progress_line(progress) == line
-
-
-class _Terminal(io.StringIO):
-    def isatty(self) -> bool:
-        return True
-
-
-def test_progress_is_one_line_written_over_and_taken_away(monkeypatch: pytest.MonkeyPatch) -> None:
-    terminal = _Terminal()
-    monkeypatch.setattr("linkwork.families.commands._PATIENCE", 0.0)
-    monkeypatch.setattr(sys, "stderr", terminal)
-    with study_progress(quiet=False) as tell:
-        for done in (500, 1000):
-            tell(Progress(total=1000, done=done, before=0, seconds=1.0))
-    longest = len(" 50 %  500 of 1,000 designs  500/s  0:01 left")
-    assert terminal.getvalue() == (
-        "\r 50 %  500 of 1,000 designs  500/s  0:01 left"
-        "\r100 %  1,000 of 1,000 designs  1,000/s  0:00 left\r" + " " * (longest + 4) + "\r"
-    )
-
-
-def test_there_is_no_progress_in_a_file_nor_where_it_is_not_wanted(
-    monkeypatch: pytest.MonkeyPatch,
-) -> None:
-    half = Progress(total=2, done=1, before=0, seconds=5.0)
-    file, terminal = io.StringIO(), _Terminal()
-    monkeypatch.setattr("linkwork.families.commands._PATIENCE", 0.0)
-    for stream, quiet in ((file, False), (terminal, True)):
-        monkeypatch.setattr(sys, "stderr", stream)
-        with study_progress(quiet) as tell:
-            tell(half)
-        assert stream.getvalue() == ""
 
 
 def test_the_schema_of_plans_is_printed(run: Run) -> None:

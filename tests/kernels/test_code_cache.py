@@ -240,7 +240,7 @@ def _nothing_said() -> None:
     kernel_cache._warn_that_it_compiles.cache_clear()
 
 
-@pytest.mark.parametrize("loop", ["independent", "lockstep"])
+@pytest.mark.parametrize("loop", ["march.independent", "march.lockstep"])
 @pytest.mark.usefixtures("_nothing_said")
 def test_compiled_code_counts_if_it_is_that_of_all_sources(
     loop: str,
@@ -249,7 +249,7 @@ def test_compiled_code_counts_if_it_is_that_of_all_sources(
     caplog: pytest.LogCaptureFixture,
 ) -> None:
     monkeypatch.setenv("NUMBA_CACHE_DIR", str(tmp_path))
-    left = tmp_path / "march_0a1b" / f"{loop}.{kernel_cache.LOOPS[loop]}-336.py311.nbi"
+    left = tmp_path / "march_0a1b" / f"{loop[6:]}.{kernel_cache.LOOPS[loop]}-336.py311.nbi"
     left.parent.mkdir()
     left.write_bytes(b"an index with " + sources_digest() + b" in it")
     assert is_compiled(loop)
@@ -289,5 +289,5 @@ def test_every_source_that_is_compiled_has_a_part_in_the_digest(tmp_path: Path) 
 
 def test_numba_keeps_the_digest_by_which_compiled_code_is_known() -> None:
     import_module("linkwork.families.march.independent")
-    indices = [index.read_bytes() for index in kernel_cache._indices("independent")]
+    indices = [index.read_bytes() for index in kernel_cache._indices("march.independent")]
     assert any(sources_digest() in index for index in indices)

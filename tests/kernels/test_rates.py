@@ -9,8 +9,9 @@ import pytest
 import linkwork as lw
 from linkwork.core.motion.model import Model, leading_input
 from linkwork.core.record.closure import BlockPart
+from linkwork.core.table.loop_table import LoopTable
 from linkwork.families.march.places import at_places
-from linkwork.families.march.rate_programs import evidence_program, rate_program
+from linkwork.families.march.rate_programs import PlaceProgram, PlaceWriter
 
 Array = npt.NDArray[np.float64]
 ROWS = 5
@@ -57,6 +58,11 @@ def parts_of(model: Model) -> list[BlockPart]:
     ]
 
 
+def rate_program(table: LoopTable, parts: list[BlockPart]) -> PlaceProgram:
+    writer = PlaceWriter(table, parts)
+    return writer.finish(writer.rates())
+
+
 @pytest.mark.parametrize("name", MECHANISMS)
 @pytest.mark.parametrize("threads", [1, 2])
 def test_rates_and_evidence_are_those_of_the_solver(name: str, threads: int) -> None:
@@ -65,11 +71,12 @@ def test_rates_and_evidence_are_those_of_the_solver(name: str, threads: int) -> 
     v, inputs = places(model, 3)
     turns = np.zeros((ROWS, DESIGNS), dtype=np.int32)
     lengths = {k for k, line in enumerate(model.equations.linear) if line.kind == "length"}
+    writer = PlaceWriter(table, parts_of(model))
     rates, evidence = (
         at_places(program, coefficients(model), v, inputs, turns, threads)
         for program in (
             rate_program(table, parts_of(model)),
-            evidence_program(table, parts_of(model), lengths),
+            writer.finish([*writer.condition(lengths), *writer.residual(lengths)]),
         )
     )
     whole = np.concatenate(

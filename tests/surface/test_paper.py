@@ -13,8 +13,6 @@ _FIGURE = re.compile(r"\b\d{1,3}(?:,\d{3})+\b|\b\de-\d+\b")
 #: Rows of the table by the names in the record; every other column is for 3,601 rows.
 _ROWS = {
     "Linkwork, `sweep`, certified": "linkwork, certified",
-    "Linkwork, compiled kernel, proof": "compiled kernel, proof",
-    "Linkwork, compiled kernel": "compiled kernel",
     "pylinkage `step_fast`": "pylinkage step_fast",
     "CasADi `fast_newton`, C": "casadi fast_newton, C",
     "SciPy `fsolve`": "scipy fsolve",

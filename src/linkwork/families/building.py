@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, fields, replace
-from typing import Protocol, cast
+from typing import Any, cast
 from weakref import WeakKeyDictionary
 
 import numpy as np
@@ -147,16 +147,15 @@ def _same_laws(laws: Sequence[LawEquation], others: Sequence[LawEquation]) -> bo
     return len(laws) == len(others) and all(map(_same_law, laws, others))
 
 
-def _law_numbers(equation: LawEquation) -> tuple[Array, Array, Array]:
-    return equation.law.breaks, equation.law.powers, equation.law.sines
-
-
 def _same_law(a: LawEquation, b: LawEquation) -> bool:
     return (
         (a.terms, a.inner, a.kind) == (b.terms, b.inner, b.kind)
         and bool(a.constant == b.constant)
         and bool(a.offset == b.offset)
-        and all(map(np.array_equal, _law_numbers(a), _law_numbers(b)))
+        and all(
+            np.array_equal(getattr(a.law, numbers), getattr(b.law, numbers))
+            for numbers in ("breaks", "powers", "sines")
+        )
     )
 
 
@@ -282,7 +281,7 @@ class Builder:
         numbers = {quantity: float(values[k]) for quantity, values in self.values.items()}
         rows = np.array([k])
         try:
-            model = build_design(with_numbers(self.base.description, numbers))
+            model = model_of(with_numbers(self.base.description, numbers))
         except (LinkworkError, ArithmeticError) as error:
             self._mark(rows, str(error))
             return
@@ -341,11 +340,6 @@ class Builder:
 
 def _named(found: Coefficients) -> dict[str, Sequence[object]]:
     return {part.name: getattr(found, part.name) for part in fields(found)}
-
-
-def build_design(description: Description) -> Model:
-    """The model of one design, compiled like any mechanism."""
-    return model_of(description)
 
 
 def family_base(model: Model, varied: Sequence[VariedNumber]) -> tuple[Model, bool]:
@@ -415,11 +409,6 @@ def _first(number: complex) -> complex:
 
 # ----------------------------------------------------------------------
 # A family: many designs of one topology as arrays of coefficients.
-
-
-class _HasModel(Protocol):
-    @property
-    def model(self) -> Model: ...
 
 
 @dataclass(frozen=True, kw_only=True, eq=False, repr=False)
@@ -517,7 +506,7 @@ class Designs:
         MechanismError
             If it has a problem.
         """
-        return build_design(self.description(k))
+        return model_of(self.description(k))
 
     def message(self, k: int) -> str:
         """The problem of the k-th design, with its numbers; empty if there is none."""
@@ -530,7 +519,7 @@ class Designs:
         return self.problems[int(self.problem[k])]
 
 
-def designs_of(mechanism: Model | _HasModel, dimensions: Mapping[str, object]) -> Designs:
+def designs_of(mechanism: object, dimensions: Mapping[str, object]) -> Designs:
     """Designs of a mechanism with some numbers varied.
 
     Parameters
@@ -577,7 +566,7 @@ def designs_of(mechanism: Model | _HasModel, dimensions: Mapping[str, object]) -
     base, together = family_base(model, quantities)
     builder = Builder(base, dict(zip(quantities, columns.values(), strict=True)), together)
     builder.run()
-    arrays = builder.arrays
+    arrays: dict[str, Any] = builder.arrays
     if model.description.configuration:
         # see the notes: all designs start from the configuration of the mechanism
         arrays["start"][builder.problem == 0] = model.equations.start
@@ -585,16 +574,9 @@ def designs_of(mechanism: Model | _HasModel, dimensions: Mapping[str, object]) -
         base=base,
         dimensions=FrozenDict(columns),
         quantities=quantities,
-        loops=arrays["loops"],
-        linear=arrays["linear"],
-        points=arrays["points"],
-        link_angles=arrays["link_angles"],
-        start=arrays["start"],
-        numbers=arrays["numbers"],
-        redundant=arrays["redundant"],
-        length_scale=arrays["length_scale"][:, 0],
         problem=builder.problem,
         problems=tuple(builder.problems),
+        **arrays | {"length_scale": arrays["length_scale"][:, 0]},
     )
 
 

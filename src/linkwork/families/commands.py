@@ -5,10 +5,9 @@ from __future__ import annotations
 import math
 import sys
 import time
-from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from collections.abc import Iterator, Sequence
+from contextlib import nullcontext
 from pathlib import Path
-from time import monotonic
 
 import click
 
@@ -41,21 +40,6 @@ _DIGITS = 6
 _MOST_PROBLEMS = 5
 _SIGN = "#"
 _GAP = 2  # between columns
-
-
-def progress_line(progress: studies.Progress) -> str:
-    """The finished fraction of a run, its rate and the remaining time."""
-    share = math.floor(100 * progress.done / progress.total)
-    line = f"{share:3d} %  {progress.done:,} of {progress.total:,} designs"
-    if progress.left is None:
-        return line
-    return f"{line}  {progress.rate:,.0f}/s  {_duration(progress.left)} left"
-
-
-def _duration(seconds: float) -> str:
-    minutes, rest = divmod(math.ceil(seconds), 60)
-    hours, minutes = divmod(minutes, 60)
-    return f"{hours}:{minutes:02}:{rest:02}" if hours else f"{minutes}:{rest:02}"
 
 
 def summary_lines(found: studies.Summary, store: str) -> list[str]:
@@ -92,24 +76,23 @@ def _counts(found: studies.Summary) -> Iterator[tuple[str, str]]:
     yield "passed", _of(found.passed, found.computed)
 
 
-def _chunks(which: tuple[int | str, ...]) -> str:
-    """Names of chunks and files, the first few of them."""
-    named = [x if isinstance(x, str) else f"chunk {x}" for x in which[:_MOST_PROBLEMS]]
-    more = len(which) - len(named)
-    return ", ".join(named) + (f" and {more:,} more" if more else "")
+def _chunks(which: tuple[int, ...]) -> str:
+    return _first_few([f"chunk {k}" for k in which])
+
+
+def _first_few(names: Sequence[str]) -> str:
+    more = len(names) - _MOST_PROBLEMS
+    return ", ".join(names[:_MOST_PROBLEMS]) + (f" and {more:,} more" if more > 0 else "")
 
 
 def verification_lines(found: studies.Verification, store: str) -> list[str]:
     """The page of a comparison of a store with its checksums."""
     if found.intact:
         return [f"All {found.sound:,} chunks of {store} are as they were written."]
-    damaged = {"metadata": found.metadata} if found.metadata else {}
-    damaged |= {f"chunk {chunk}": files for chunk, files in found.chunks.items()}
-    names = dict.fromkeys(damaged, bad)
-    pairs = ((name, _chunks(files)) for name, files in damaged.items())
+    damaged = {f"chunk {chunk}": _first_few(files) for chunk, files in found.chunks.items()}
     return [
         *title_lines(f"{store} is damaged"),
-        *fields(pairs, names),
+        *fields(damaged.items(), dict.fromkeys(damaged, bad)),
         *sentence(
             str,
             f"{found.sound:,} chunks are as they were written. To repair the others, repeat the "
@@ -173,9 +156,6 @@ def _histogram(output: studies.OutputSummary) -> list[str]:
 # ``linkwork study``
 
 
-_PATIENCE = 1.0  # seconds before the progress line appears
-
-
 @click.command("study")
 @click.argument("plan", metavar="PLAN", required=False)
 @click.option("-o", "--output", metavar="STORE", help="Folder for the results (a Zarr store).")
@@ -189,7 +169,7 @@ _PATIENCE = 1.0  # seconds before the progress line appears
 @click.option(
     "--verify", is_flag=True, help="Only compare the files of a store with their checksums."
 )
-@click.option("--quiet", is_flag=True, help="Do not show the progress line.")
+@click.option("--quiet", is_flag=True, help="Do not show the progress bar.")
 @json_option
 @debug_option
 @click.pass_context
@@ -221,7 +201,8 @@ def study_command(
         if plan is not None or output is not None:
             raise InputError("--summary reads a store: leave out the plan and -o")
         check_packages()
-        _print(studies.summary_of(summary), summary, as_json)
+        stored = studies.summary_of(summary)
+        _print(stored, summary_lines(stored, summary), as_json)
         return
     if verify:
         if plan is None or output is not None:
@@ -229,7 +210,7 @@ def study_command(
                 "--verify reads a store and nothing else:\n    linkwork study out.zarr --verify"
             )
         compared = studies.verify_store(plan)
-        _print_verification(compared, plan, as_json)
+        _print(compared, verification_lines(compared, plan), as_json)
         context.exit(0 if compared.intact else 1)
     if plan is None or output is None:
         raise InputError(
@@ -237,20 +218,24 @@ def study_command(
         )
     check_packages()
     asked = _read(plan, names)
-    with study_progress(quiet) as tell:
-        try:
+    try:
+        with nullcontext(_unseen) if quiet else progress("studying") as tell:
             found = studies.run_study(
                 asked,
                 output,
                 workers=workers,
                 scheduler=scheduler,
                 force=force,
-                progress=tell,
+                progress=lambda progress: tell(progress.done / progress.total),
             )
-        except KeyboardInterrupt:
-            print_lines(["", *_how_to_go_on(asked, output)], err=True)
-            raise
-    _print(found, output, as_json)
+    except KeyboardInterrupt:
+        print_lines(["", *_how_to_go_on(asked, output)], err=True)
+        raise
+    _print(found, summary_lines(found, output), as_json)
+
+
+def _unseen(fraction: float) -> None:
+    check_interrupt()
 
 
 def _read(plan: str, columns: tuple[str, ...]) -> studies.Study:
@@ -261,18 +246,13 @@ def _read(plan: str, columns: tuple[str, ...]) -> studies.Study:
     return studies.read_plan_bytes(sys.stdin.buffer.read(), columns=columns)
 
 
-def _print(found: studies.Summary, store: str, as_json: bool) -> None:
+def _print(
+    found: studies.Summary | studies.Verification, lines: Sequence[str], as_json: bool
+) -> None:
     if as_json:
         print_json(found.to_dict())
     else:
-        print_lines(summary_lines(found, store))
-
-
-def _print_verification(found: studies.Verification, store: str, as_json: bool) -> None:
-    if as_json:
-        print_json(found.to_dict())
-    else:
-        print_lines(verification_lines(found, store))
+        print_lines(lines)
 
 
 def _how_to_go_on(asked: studies.Study, store: str) -> list[str]:
@@ -284,30 +264,6 @@ def _how_to_go_on(asked: studies.Study, store: str) -> list[str]:
         f"{stored} of {asked.plan.count} designs are stored in {store}. "
         "To resume, repeat the same command."
     )
-
-
-@contextmanager
-def study_progress(quiet: bool) -> Iterator[Callable[[studies.Progress], None]]:
-    """A progress line that rewrites itself, on the error stream of a terminal only."""
-    if quiet or not sys.stderr.isatty():
-        yield lambda progress: check_interrupt()
-        return
-    began = monotonic()
-    width = 0
-
-    def tell(progress: studies.Progress) -> None:
-        nonlocal width
-        check_interrupt()
-        if monotonic() - began > _PATIENCE:
-            line = progress_line(progress)
-            click.echo("\r" + line.ljust(width), nl=False, err=True)
-            width = len(line)
-
-    try:
-        yield tell
-    finally:
-        if width:
-            click.echo("\r" + " " * width + "\r", nl=False, err=True)
 
 
 # ----------------------------------------------------------------------

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import logging
-from collections.abc import Iterable
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 from time import perf_counter
@@ -73,8 +72,9 @@ class DesignRows:
 
     ``v`` (n, R, D): unknowns, NaN where there is no position. ``status``, ``certification``
     (R, D): codes. ``radius`` (R, D): of the proof, weighted, NaN without one; (0, D) if none is
-    requested. ``limits`` (2, D): lower and upper end of the branch, ``limit_kinds`` (2, D): their
-    kinds, see :func:`linkwork.families.design_sweep.ends_as_limits`; NaN without a position.
+    requested. ``limits`` (2, D): lower and upper end of the branch, values of the path, infinite
+    where nothing ended it, NaN where the place was not located or without a position;
+    ``limit_kinds`` (2, D): their kinds, indices in :data:`LIMIT_KINDS`.
     ``alone`` (D,): designs computed one at a time; ``own``: their own results. ``inputs``
     (R, p, D): if designs have inputs of their own instead of the table's.
     """
@@ -190,19 +190,6 @@ class FamilyLimits:
         return f"<FamilyLimits of {len(self)} designs: {told}>"
 
 
-def ends_as_limits(ends: Iterable[BranchEnd]) -> tuple[Array, StatusArray]:
-    """Where a branch ends below and above, values of the path (2,), and the kinds as codes (2,).
-
-    Infinite where nothing ended it, NaN where the place was not located.
-    """
-    limits, kinds = np.array([-np.inf, np.inf]), np.zeros(2, dtype=np.int8)
-    for end in ends:
-        which = int(end.side > 0.0)
-        limits[which] = end.t if end.limit.located else np.nan
-        kinds[which] = LIMIT_KINDS.index(end.limit.kind)
-    return limits, kinds
-
-
 # ----------------------------------------------------------------------
 # Sweep single designs one after the other.
 
@@ -267,7 +254,11 @@ def _note_way(
     """Store the whole turns to the rows of a design swept alone, and its limits."""
     if not (rows.status == Status.CONVERGED.code).any():
         return
-    found.limits[:, k], found.limit_kinds[:, k] = ends_as_limits(ends)
+    found.limits[:, k] = -np.inf, np.inf
+    for end in ends:
+        which = int(end.side > 0.0)
+        found.limits[which, k] = end.t if end.limit.located else np.nan
+        found.limit_kinds[which, k] = LIMIT_KINDS.index(end.limit.kind)
     if base.equations.inputs[0].kind == "angle":
         # a row reached in the other direction has an input whole turns away
         gap = (rows.v[:, len(found.v)] - base.rows[:, 0]) / FULL_TURN

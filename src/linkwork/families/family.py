@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass
 from importlib import import_module
+from typing import NamedTuple
 
 import numpy as np
 
@@ -25,17 +25,13 @@ from linkwork.families.family_motion import FamilyMotion
 #: Modules that are compiled when they are loaded, those first that others need; each with its share
 #: of the time.
 _MODULES = {
-    "program.interpreter": 0.09,
-    "march.named_trial": 0.08,
-    "march.start_positions": 0.08,
-    "march.position_programs": 0.01,
-    "march.independent": 0.13,
-    "march.lockstep": 0.13,
-    "march.rowwise": 0.24,
-    "paths.lane_paths": 0.09,
-    "single.compiled_rows": 0.08,
+    "compiled.interpreter": 0.1,
+    "march.step_trial": 0.25,
+    "march.independent": 0.2,
+    "march.lockstep": 0.2,
+    "paths.path_kernel": 0.15,
 }
-_DESIGNS = 17  # more than march row after row
+_DESIGNS = 5  # more than march row after row
 
 
 def compile_kernels(progress: Callable[[float], None] | None = None) -> None:
@@ -57,7 +53,7 @@ def compile_kernels(progress: Callable[[float], None] | None = None) -> None:
     check_flags(progress)
     done = 0.0
     for module, share in _MODULES.items():
-        import_module(f"linkwork.core.table.{module}")
+        import_module(f"linkwork.families.{module}")
         done += share
         if progress is not None:
             progress(done)
@@ -243,7 +239,10 @@ class Family:
         # a motion without designs has all names, at no cost
         nothing = self.take(slice(0)).sweep(certify=False)
         for column in columns:  # reject unknown names before any computation
-            column.check(nothing)
+            if column.function is None:
+                nothing.value(column.name)
+            else:
+                nothing.quantity(column.name)
         found: dict[str, list[Array]] = {column.key: [np.empty(0)] for column in columns}
         found |= {"found": [np.empty(0, dtype=int)], "certified": [np.empty(0, dtype=int)]}
         found |= {"limit.lower": [np.empty(0)], "limit.upper": [np.empty(0)]}
@@ -251,7 +250,7 @@ class Family:
             self._part(), certify=certify, threads=threads, specialised=specialised, device=device
         ):
             for column in columns:
-                found[column.key].append(column.of(part))
+                found[column.key].append(_numbers(part, column))
             found["found"].append(part.found.sum(axis=1))
             found["certified"].append(part.certified.sum(axis=1))
             found["limit.lower"].append(part.limits.lower)
@@ -271,31 +270,24 @@ def _workers(threads: int | None) -> int:
     return cores() if threads is None else whole_number("threads", threads, least=1)
 
 
-@dataclass(frozen=True)
-class _Column:
+class _Column(NamedTuple):
     """A number of every design, given by name or by a function of a quantity's values."""
 
     key: str
     name: str
-    function: Callable[[Array], Array] | None = None
+    function: Reduction | None = None
 
-    def check(self, motion: FamilyMotion) -> None:
-        """Reject unknown names, using a motion without designs."""
-        if self.function is None:
-            motion.value(self.name)
-        else:
-            motion.quantity(self.name)
 
-    def of(self, motion: FamilyMotion) -> Array:
-        """(D,)."""
-        if self.function is None:
-            return motion.value(self.name)
-        value = np.asarray(self.function(motion[self.name]), dtype=float)
-        if value.shape != (len(motion),):
-            raise InputError(
-                f"{self.key} needs one number per design ({len(motion)},), got {value.shape}"
-            )
-        return value
+def _numbers(motion: FamilyMotion, column: _Column) -> Array:
+    """One number for each design, (D,)."""
+    if column.function is None:
+        return motion.value(column.name)
+    value = np.asarray(column.function(motion[column.name]), dtype=float)
+    if value.shape != (len(motion),):
+        raise InputError(
+            f"{column.key} needs one number per design ({len(motion)},), got {value.shape}"
+        )
+    return value
 
 
 def _columns(

@@ -265,14 +265,13 @@ class FamilyMarch:
             ended = np.flatnonzero(~np.isnan(found.end[way, there]) & np.isinf(limits[way]))
             if not len(ended):
                 continue
-            folds = dead_points(
+            limits[way, ended] = dead_points(
                 self.path.model.compiled.table,
                 self.zeros,
                 {name: values[mine[ended]] for name, values in self.coefficients.items()},
                 self.kernel.last_nodes(found, way, there[ended]),
                 way,
             )
-            limits[way, ended] = np.where(folds.found, folds.t, np.nan)
 
     def _wind(
         self,

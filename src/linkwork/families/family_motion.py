@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Any
@@ -24,7 +24,6 @@ from linkwork.families.building import Designs
 from linkwork.families.design_sweep import DesignRows, FamilyLimits, message_single
 from linkwork.families.located import closer_rows, located_number
 from linkwork.families.values import (
-    DesignEvidence,
     DesignRates,
     DesignValues,
     design_efforts,
@@ -43,8 +42,6 @@ _NEAR = 1 << 16  # positions whose rates are computed at a time: temporaries fit
     "rows",
     "quantities",
     "quantity",
-    "take_rows",
-    "check_names",
     "leading",
     "threads",
     "unit",
@@ -99,17 +96,20 @@ class FamilyMotion:
 
     def _moving(self) -> Iterator[tuple[slice, DesignValues]]:
         """Quantities with rates, some designs at a time for the processor's cache."""
-        rates, rows = self._rates, self.rows
         # temporaries of all designs at once would leave the cache
         step = max(1, _NEAR // max(1, len(self.inputs)))
         for begin in range(0, len(self), step):
             part = slice(begin, begin + step)
-            own = self.designs.take(part)
-            v, turns = rows.v[:, :, part], rows.turns[:, part]
-            yield part, DesignValues(own, self.inputs, v, turns, rates.take(part))
+            yield part, self._moving_part(part)
+
+    def _moving_part(self, part: slice) -> DesignValues:
+        """Quantities with rates of some designs."""
+        v, turns = self.rows.v[:, :, part], self.rows.turns[:, part]
+        own, rates = self.designs.take(part), self._rates.take(part)
+        return DesignValues(own, self.inputs, v, turns, rates)
 
     @cached_property
-    def _evidence(self) -> DesignEvidence:
+    def _evidence(self) -> tuple[Array, Array]:
         return design_evidence(self.designs, self.rows, self.threads)
 
     @property
@@ -138,21 +138,6 @@ class FamilyMotion:
             )
         asked.check_rate(self.speed if asked.rate and asked.rate.by_time else None)
         return asked
-
-    def check_names(self, names: Iterable[str]) -> None:
-        """Raise an error for unknown names, before any computation.
-
-        Parameters
-        ----------
-        names : iterable of str
-
-        Raises
-        ------
-        UnknownNameError
-            Lists the nearest names.
-        """
-        for name in names:
-            self.quantity(name)
 
     def __getitem__(self, name: str) -> Array:
         """Values of a quantity by name, (D, R), file units; NaN where there is no position.
@@ -195,17 +180,8 @@ class FamilyMotion:
             return None
         found = together.T
         for k in self.rows.own:
-            own = self.take_rows(k)
-            found[k] = asked.values(own, None)[:, 0]
+            found[k] = asked.values(self._moving_part(slice(k, k + 1)), None)[:, 0]
         return found
-
-    def take_rows(self, k: int) -> DesignValues:
-        """Quantities with rates of one design, (R, 1)."""
-        part, rows = slice(k, k + 1), self.rows
-        return DesignValues(
-            self.designs.take(part), self.inputs, rows.v[:, :, part], rows.turns[:, part],
-            self._rates.take(part),
-        )  # fmt: skip
 
     def series(self, name: str) -> Series:
         """A quantity with both derivatives with respect to the leading input, (D, R) each.
@@ -274,12 +250,12 @@ class FamilyMotion:
         """Condition number of the equations at every position, (D, R); see
         :class:`~linkwork.core.results.motion.Motion`.
         """
-        return self._evidence.condition.T
+        return self._evidence[0].T
 
     @property
     def residual(self) -> Array:
         """Residual of every position, (D, R), relative to the longest link."""
-        return self._evidence.residual.T
+        return self._evidence[1].T
 
     @cached_property
     def limits(self) -> FamilyLimits:
@@ -352,7 +328,8 @@ class FamilyMotion:
         """
         with installed_with("tables", "labelled arrays need xarray"):
             import xarray
-        self.check_names(names)
+        for name in names:  # before any computation
+            self.quantity(name)
         model = self.designs.base
         lead = model.equations.inputs[0].name
         axes = ("design", lead)

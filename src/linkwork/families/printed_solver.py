@@ -26,12 +26,13 @@ from linkwork.core.record.recorder import (
     reserve,
 )
 from linkwork.families.march.march_programs import (
+    OPTIONS,
     Steps,
     ThreadState,
     march_programs,
     printed_sections,
 )
-from linkwork.families.march.rate_programs import drawn_program
+from linkwork.families.march.rate_programs import PlaceWriter
 from linkwork.families.recorded_design import Part, RecordedDesign, RecordedNumber, Recording
 from linkwork.families.topologies import block_parts, lines_of_lengths
 
@@ -215,9 +216,6 @@ class RecordedQuantities(QuantityValues):
 # ``drawn(v, d, o, q)``    points, columns and turns, with derivatives
 
 
-_OPTIONS = ("tolerance", "most_turn", "most_correction", "most_drift")
-
-
 @dataclass(frozen=True, kw_only=True)
 class PrintedSolver:
     """The functions, and how their arrays are laid out.
@@ -279,12 +277,13 @@ def print_solver(
     written = {name: part for name, part in fixed.items() if name not in spreads}
     zeros = frozenset(name for name, part in written.items() if not part)
     programs = march_programs(table, parts, zeros, certified=True)
-    state = ThreadState.of(programs, _OPTIONS, written)
+    state = ThreadState.of(programs, OPTIONS, written)
     starts = ["fits", *(f"guess{k}" for k in range(table.unknowns)), "start"]
     varied = [name for name, part in design.parts.items() if isinstance(part, Value)]
     order = dict.fromkeys([*starts, *state.coefficients, *spreads, *varied])
     places = {name: f"d[{k}]" for k, name in enumerate(order)}
-    at_rows = drawn_program(table, parts, lines_of_lengths(base), zeros)
+    writer = PlaceWriter(table, parts, zeros)
+    at_rows = writer.finish([*writer.rates(), *writer.residual(lines_of_lengths(base))])
     variables = {f"v{k}": f"v[{k}]" for k in range(table.variables)}
     rates = {name: f"o[{k}]" for k, name in enumerate(at_rows.wanted)}
     drawing = RecordedQuantities(design)

@@ -28,14 +28,13 @@ from linkwork.core.foundation.lanes import (
 from linkwork.core.foundation.rounding import UNIT_ROUNDOFF
 from linkwork.core.mechanism.description import Description
 from linkwork.core.mechanism.varied_numbers import VariedNumber, number_named, with_numbers
-from linkwork.core.motion.model import Model
+from linkwork.core.motion.model import Model, model_of
 from linkwork.core.motion.sweeping import sweep
 from linkwork.core.record.recorder import Recorder, Value
 from linkwork.core.results.motion import Motion
 from linkwork.families.building import (
     Coefficients,
     Pattern,
-    build_design,
     family_base,
     write_equations,
 )
@@ -460,7 +459,7 @@ def _changed(model: Model, quantity: VariedNumber) -> Motion | None:
     step = _PART * (abs(value) or model.equations.length_scale)
     for other in (value + step, value - step):
         try:
-            motion = sweep(build_design(with_numbers(model.description, {quantity: other})))
+            motion = sweep(model_of(with_numbers(model.description, {quantity: other})))
         except LinkworkError:
             continue
         if motion.found.any():

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping
 from contextlib import suppress
 from dataclasses import dataclass, replace
 from functools import cached_property
@@ -26,17 +26,11 @@ from linkwork.core.mechanism.varied_numbers import with_numbers
 from linkwork.core.motion.following import Drive
 from linkwork.core.motion.model import Model, leading_input, leading_speeds
 from linkwork.core.motion.positions import QuantityValues
-from linkwork.core.record.closure import BlockPart
 from linkwork.core.record.recorder import Recorder, Value
 from linkwork.families.building import Designs
 from linkwork.families.compiled.code_cache import has_compiler
 from linkwork.families.design_sweep import DesignRows, loop_coefficients, zero_coefficients
-from linkwork.families.march.rate_programs import (
-    PlaceProgram,
-    evidence_program,
-    quantity_program,
-    rate_program,
-)
+from linkwork.families.march.rate_programs import PlaceProgram, PlaceWriter
 from linkwork.families.printed_solver import RecordedQuantities
 from linkwork.families.recorded_design import Part
 from linkwork.families.topologies import block_parts, lines_of_lengths
@@ -71,14 +65,6 @@ class DesignRates:
         )
 
 
-@dataclass(frozen=True, kw_only=True, eq=False)
-class DesignEvidence:
-    """``condition``, ``residual`` (R, D), as for a motion; NaN without a position."""
-
-    condition: Array
-    residual: Array
-
-
 def design_rates(designs: Designs, rows: DesignRows, threads: int = 1) -> DesignRates:
     """The rates of all unknowns, computed for all designs together by a compiled program.
 
@@ -98,8 +84,8 @@ def design_rates(designs: Designs, rows: DesignRows, threads: int = 1) -> Design
     both = np.full((2, n, count, width), np.nan)
     if _together(designs, rows):
         reading = PlaceReading.of(designs)
-        program = rate_program(designs.base.compiled.table, reading.parts, reading.zeros)
-        both = reading.run(program, rows, threads).reshape(both.shape)
+        writer = reading.writer()
+        both = reading.run(writer.finish(writer.rates()), rows, threads).reshape(both.shape)
         # at dead points J is singular: rates are infinite or noise
         both[~np.isfinite(both)] = np.nan
     driven = np.ones((2, count, width), dtype=bool)
@@ -109,13 +95,13 @@ def design_rates(designs: Designs, rows: DesignRows, threads: int = 1) -> Design
     return DesignRates(first=both[0], second=both[1], driven=driven)
 
 
-def design_evidence(designs: Designs, rows: DesignRows, threads: int = 1) -> DesignEvidence:
-    """Condition number and residual of every position."""
+def design_evidence(designs: Designs, rows: DesignRows, threads: int = 1) -> tuple[Array, Array]:
+    """Condition number and residual of every position, (R, D) each; NaN without one."""
     condition, residual = np.full((2, *rows.v.shape[1:]), np.nan)
     if _together(designs, rows):
-        reading, base = PlaceReading.of(designs), designs.base
-        lengths = lines_of_lengths(base)
-        program = evidence_program(base.compiled.table, reading.parts, lengths, reading.zeros)
+        reading, lengths = PlaceReading.of(designs), lines_of_lengths(designs.base)
+        writer = reading.writer()
+        program = writer.finish([*writer.condition(lengths), *writer.residual(lengths)])
         condition, residual = reading.run(program, rows, threads)
         found = rows.status == Status.CONVERGED.code
         # of existing positions; NaN for the others
@@ -123,7 +109,7 @@ def design_evidence(designs: Designs, rows: DesignRows, threads: int = 1) -> Des
         condition[~found] = residual[~found] = np.nan
     for k, own in rows.own.items():
         condition[:, k], residual[:, k] = own.condition, own.residual
-    return DesignEvidence(condition=condition, residual=residual)
+    return condition, residual
 
 
 def _together(designs: Designs, rows: DesignRows) -> bool:
@@ -137,7 +123,6 @@ class PlaceReading:
 
     designs: Designs
     coefficients: dict[str, Array]
-    parts: list[BlockPart]
     zeros: set[str]
 
     @classmethod
@@ -147,12 +132,12 @@ class PlaceReading:
         coefficients["length"] = designs.length_scale
         for j, rate in enumerate(leading_input(designs.base.rows)[1]):
             coefficients[f"u{j}.rate"] = np.full(len(designs), rate)
-        return cls(
-            designs=designs,
-            coefficients=coefficients,
-            parts=block_parts(designs.base),
-            zeros=zeros,
-        )
+        return cls(designs=designs, coefficients=coefficients, zeros=zeros)
+
+    def writer(self) -> PlaceWriter:
+        """Writes programs of the family's equations."""
+        base = self.designs.base
+        return PlaceWriter(base.compiled.table, block_parts(base), self.zeros)
 
     def run(self, program: PlaceProgram, rows: DesignRows, threads: int) -> Array:
         """Run at the inputs of the solved positions, on the straight line of the table."""
@@ -427,24 +412,19 @@ def _program(
     designs: Designs, reading: PlaceReading, coefficients: Mapping[str, Array]
 ) -> PlaceProgram:
     model, fine = designs.base, np.flatnonzero(designs.problem == 0)
-
-    def write(
-        rec: Recorder, first: Mapping[int, Value | float], second: Mapping[int, Value | float]
-    ) -> Sequence[str]:
-        parts: dict[str, Part] = {}
-        for name, values in coefficients.items():
-            one = float(values[fine[0]]) if len(fine) else 0.0
-            # what all designs share is a constant, which the recorder simplifies
-            varies = bool((values[fine] != one).any())
-            parts[name] = rec.input(name) if varies else one
-        family = _FamilyParts(model, parts, leading_input(model.rows)[1])
-        solved = _RecordedRows(family, rec, first, second)
-        effort = _effort(solved, parts.get(_RATE, 0.0))
-        slow = solved.slow(parts["length"])
-        rec.write("effort", rec.where(slow, effort, np.nan))
-        return ["effort"]
-
-    return quantity_program(model.compiled.table, reading.parts, write, reading.zeros)
+    writer = reading.writer()
+    rec, derivatives = writer.rec, writer.derivatives()
+    parts: dict[str, Part] = {}
+    for name, values in coefficients.items():
+        one = float(values[fine[0]]) if len(fine) else 0.0
+        # what all designs share is a constant, which the recorder simplifies
+        varies = bool((values[fine] != one).any())
+        parts[name] = rec.input(name) if varies else one
+    family = _FamilyParts(model, parts, leading_input(model.rows)[1])
+    solved = _RecordedRows(family, rec, *derivatives)
+    effort = _effort(solved, parts.get(_RATE, 0.0))
+    rec.write("effort", rec.where(solved.slow(parts["length"]), effort, np.nan))
+    return writer.finish(["effort"])
 
 
 class _RecordedRows(RecordedQuantities):

@@ -21,11 +21,10 @@ from linkwork.families.sampling import CHUNK, Normal
 from linkwork.families.study import read_plan, read_plan_text
 from linkwork.families.study.plan_keys import PLAN as FORM
 from linkwork.families.study.study import (
-    Choice,
     Comparison,
-    Triangular,
     Word,
     read_condition,
+    read_distribution,
     usual_chunk,
     values_between,
 )
@@ -254,8 +253,8 @@ DIMENSIONS: dict[str, tuple[str, str, Callable[[], Plan]]] = {
             {
                 "O2 A": Normal(40, 0.1),
                 "A B": (110, 130),
-                "A.x": Choice((30.0, 34.0)),
-                "A.y": Triangular(10, 20, 30),
+                "A.x": read_distribution([30.0, 34.0]),
+                "A.y": read_distribution({"from": 10, "likeliest": 20, "to": 30}),
             },
             3,
         ),
@@ -295,13 +294,17 @@ def test_values_are_cut_out_of_the_chunks_of_a_plan_wherever_they_lie() -> None:
 
 def test_draws_stay_within_what_was_asked() -> None:
     generator = np.random.default_rng(1)
-    assert set(Choice((1.0, 4.0))(generator, 100)) == {1.0, 4.0}
-    drawn = Triangular(1, 2, 5)(generator, 100_000)
+    choice = read_distribution([1.0, 4.0])
+    triangle = read_distribution({"from": 1, "likeliest": 2, "to": 5})
+    assert choice is not None
+    assert triangle is not None
+    assert set(choice(generator, 100)) == {1.0, 4.0}
+    drawn = triangle(generator, 100_000)
     assert drawn.min() >= 1
     assert drawn.max() <= 5
     assert drawn.mean() == pytest.approx(8 / 3, abs=0.02)  # (1 + 2 + 5) / 3; sigma 0.85 / √n
     with pytest.raises(InputError, match="a triangle needs from <= likeliest <= to"):
-        Triangular(1, 6, 5)
+        read_distribution({"from": 1, "likeliest": 6, "to": 5})
 
 
 @pytest.mark.parametrize(

@@ -53,35 +53,31 @@ class BlockProof:
     ----------
     closure : Closure
         At the position, by the variables of its recorder.
-    scale : Mapping[int, Value]
-        Weights of the block's unknowns and of its known variables.
     """
 
-    def __init__(self, closure: Closure, scale: Mapping[int, Value]) -> None:
-        self.closure, self.rec, self.scale = closure, closure.rec, scale
+    def __init__(self, closure: Closure) -> None:
+        self.closure, self.rec = closure, closure.rec
         self.unknowns, self.known = closure.part.unknowns, closure.known()
+        #: Weights of the block's unknowns and of its known variables.
+        self.scale = {k: closure.scale(k) for k in (*self.unknowns, *self.known)}
         self.count = n = len(self.unknowns)
         jacobian = closure.jacobian(self.unknowns)
         unit = [[1.0 if i == k else 0.0 for i in range(n)] for k in range(n)]
         columns = solve_linear(self.rec, jacobian, unit).columns
         self.inverse = [[columns[k][i] for k in range(n)] for i in range(n)]
         self.size = [[self.rec.absolute(a) for a in row] for row in self.inverse]
-        row_error, slope_error = _Rounding(closure, scale).bounds()
+        row_error, slope_error = _Rounding(closure, self.scale).bounds()
         self.loss = [self.product(row, slope_error) for row in self.size]
         self.residual = self._bound_residual(row_error)
         self.defect = [self._bound_defect(i, jacobian) for i in range(n)]
         self._bound_slopes()
         self._group_terms()
 
-    def moved_to(
-        self,
-        closure: Closure,
-        scale: Mapping[int, Value],
-        moved: Callable[[Number], Value],
-    ) -> BlockProof:
+    def moved_to(self, closure: Closure, moved: Callable[[Number], Value]) -> BlockProof:
         """The proof as numbers of another recorder; ``moved``: a number of this one there."""
         other = copy(self)
-        other.closure, other.rec, other.scale = closure, closure.rec, scale
+        other.closure, other.rec = closure, closure.rec
+        other.scale = {k: closure.scale(k) for k in self.scale}
 
         def rows(matrix: Sequence[Sequence[Number]]) -> list[list[Value]]:
             return [[moved(x) for x in row] for row in matrix]

@@ -23,7 +23,8 @@ from linkwork.core.record.block_proof import BlockProof
 from linkwork.core.record.closure import (
     BlockPart,
     Closure,
-    Row,
+    add_rates,
+    condition_of,
     inverse_of,
     solve_linear,
     weighted_norm,
@@ -247,28 +248,10 @@ class ShapeWriter:
     def _rate_values(self, closure: _Numbers) -> list[int]:
         """Rates of the unknowns, then condition and determinant."""
         rec, unknowns = closure.rec, closure.part.unknowns
-        known = list(closure.known_variables)
-        first: dict[int, Number] = {k: rec.input(f"r{k}") for k in known}
-        second: dict[int, Number] = {k: rec.input(f"b{k}") for k in known}
-        matrix, drives = closure.jacobian(unknowns), closure.jacobian(known)
-        inverse, determinant = inverse_of(rec, matrix)
-
-        def product(row: Row, column: Row) -> Value:
-            return rec.total([rec.multiply(a, b) for a, b in zip(row, column, strict=True)])
-
-        side = [product(row, [first[k] for k in known]) for row in drives]
-        # solved, not multiplied by the inverse: a rate that is exactly 0 or 1 comes out so
-        (rates,) = solve_linear(rec, matrix, [side]).columns
-        first |= {k: -x for k, x in enumerate(rates)}  # eq. (11)
-        driven = [product(row, [second[k] for k in known]) for row in drives]
-        bends = [rec.add(a, b) for a, b in zip(closure.bending(first, first), driven, strict=True)]
-        (bent,) = solve_linear(rec, matrix, [bends]).columns
-        second |= {k: -x for k, x in enumerate(bent)}  # eq. (12)
-        weights = [closure.scale(k) for k in unknowns]
-        condition = rec.multiply(  # eq. (14)
-            weighted_norm(rec, matrix, weights, closure.equation_scales),
-            weighted_norm(rec, inverse, closure.equation_scales, weights),
-        )
+        first: dict[int, Number] = {k: rec.input(f"r{k}") for k in closure.known_variables}
+        second: dict[int, Number] = {k: rec.input(f"b{k}") for k in closure.known_variables}
+        add_rates(closure, first, second)
+        condition, determinant = condition_of(closure, closure.equation_scales)
         both = [rec.add(which[k], 0.0) for which in (first, second) for k in unknowns]
         return [x.number for x in (*both, condition, determinant)]
 
@@ -304,8 +287,7 @@ class ShapeWriter:
         And the proof as numbers of another recorder, in which these are inputs ``q0``, ``q1``, ….
         """
         closure = self._closure()
-        proof = BlockProof(closure, {k: closure.scale(k) for k in range(len(self.variables))})
-        later = self._closure()
+        proof, later = BlockProof(closure), self._closure()
         places: dict[int, int] = {}
 
         def moved(x: Number) -> Value:
@@ -315,7 +297,7 @@ class ShapeWriter:
             assert isinstance(x, Value)
             return later.rec.input(f"q{places.setdefault(x.number, len(places))}")
 
-        after = proof.moved_to(later, {k: later.scale(k) for k in proof.scale}, moved)
+        after = proof.moved_to(later, moved)
         return closure.rec, list(places), later, after
 
     def place(self) -> str:
@@ -333,7 +315,7 @@ class ShapeWriter:
         """Rates, then proofs for known variables within two distances, all in one."""
         closure = self._closure()
         values = self._rate_values(closure)
-        proof = BlockProof(closure, {k: closure.scale(k) for k in range(len(self.variables))})
+        proof = BlockProof(closure)
         values += _radii(closure, proof, "e") + _radii(closure, proof, "g")
         arguments = [*self.variables, *self._of_known("rbeg")]
         return self._plain("rates_and_proofs", (closure.rec, values), arguments)

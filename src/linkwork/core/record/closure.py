@@ -158,6 +158,10 @@ class Closure:
         mine = np.flatnonzero(linear.row == row)
         return [(int(linear.variable[k]), float(linear.weight[k])) for k in mine]
 
+    def scale(self, variable: int) -> Value:
+        """The weight of a variable."""
+        return weight_of(self.rec, self.table, variable)
+
     def printed_constant(self, variable: int) -> Value | float | None:
         """The largest constant that an angle is printed with; ``None`` for a length."""
         constant = self.table.printed_constant[variable]
@@ -258,6 +262,11 @@ class Closure:
         return sorted(found - set(self.part.unknowns))
 
 
+def weight_of(rec: Recorder, table: LoopTable, variable: int) -> Value:
+    """The weight of a variable in a register; 1 for angles."""
+    return rec.constant(1.0) if table.is_angle[variable] else rec.input(f"scale{variable}")
+
+
 def _phases(terms: IndexArray, variables: IndexArray, weights: Array) -> dict[int, Phase]:
     """The phase of each term; weights of one variable are added where that rounds nothing."""
     found: dict[int, list[tuple[int, float]]] = {}
@@ -344,6 +353,41 @@ def weighted_norm(rec: Recorder, matrix: Sequence[Row], columns: Row, rows: Row)
         )
         for row, scale in zip(matrix, rows, strict=True)
     )
+
+
+def driven(closure: Closure, rates: Moves) -> list[Value]:
+    """Σ dF/dv times the rates of the known variables."""
+    rec, known = closure.rec, closure.known()
+    return [
+        rec.total([rec.multiply(x, rates[k]) for x, k in zip(row, known, strict=True)])
+        for row in closure.jacobian(known)
+    ]
+
+
+def add_rates(
+    closure: Closure, first: dict[int, Value | float], second: dict[int, Value | float]
+) -> None:
+    """Add both derivatives of a block's unknowns to those of its known variables."""
+    rec, unknowns = closure.rec, closure.part.unknowns
+    matrix = closure.jacobian(unknowns)
+    # solved, not multiplied by the inverse: a rate that is exactly 0 or 1 comes out so
+    (rates,) = solve_linear(rec, matrix, [driven(closure, first)]).columns
+    first |= {k: -x for k, x in zip(unknowns, rates, strict=True)}  # eq. (11)
+    bends = zip(closure.bending(first, first), driven(closure, second), strict=True)
+    (rates,) = solve_linear(rec, matrix, [[rec.add(a, b) for a, b in bends]]).columns
+    second |= {k: -x for k, x in zip(unknowns, rates, strict=True)}  # eq. (12)
+
+
+def condition_of(closure: Closure, scales: Row) -> tuple[Value, Value]:
+    """The condition ‖J‖·‖J⁻¹‖ of a block, and det J; ``scales``: of its residuals."""
+    rec, unknowns = closure.rec, closure.part.unknowns
+    matrix, weights = closure.jacobian(unknowns), [closure.scale(k) for k in unknowns]
+    inverse, determinant = inverse_of(rec, matrix)
+    norm, of_inverse = (
+        weighted_norm(rec, matrix, weights, scales),
+        weighted_norm(rec, inverse, scales, weights),
+    )
+    return rec.multiply(norm, of_inverse), determinant  # eq. (14)
 
 
 def _by_cramer(rec: Recorder, m: Sequence[Row], sides: Sequence[Row]) -> Linear:

@@ -18,17 +18,14 @@ from typing import Any
 from linkwork.core.foundation.errors import InputError
 from linkwork.core.foundation.files import CACHE_VARIABLE, cache_folder, user_cache
 
-#: The loops over lanes, by module, with the function that takes long to compile.
-LOOPS = {"independent": "march", "lockstep": "in_step", "rowwise": "by_rows"}
 #: The loop over solution paths of a homotopy.
-PATH_LOOP = "path_kernel"
-_FUNCTIONS = LOOPS | {PATH_LOOP: "follow_paths"}
-_FOLDERS = {PATH_LOOP: "paths"}
+PATH_LOOP = "paths.path_kernel"
+#: Modules with loops over lanes, and the function of each that takes long to compile.
+LOOPS = {"march.independent": "march", "march.lockstep": "in_step", PATH_LOOP: "follow_paths"}
 _COMPILED = (
     "core/numerics/marching.py", "core/record/*.py", "families/compiled/*.py", "families/gpu/*.py",
     "families/march/*.py", "families/paths/*.py",
 )  # fmt: skip
-_PAYS = 10_000_000  # positions: as long as they take another loop does it take to compile one
 
 
 def has_compiler() -> bool:
@@ -40,7 +37,7 @@ def has_compiler() -> bool:
 
 def is_loaded(loop: str) -> bool:
     """Whether this process has a loop in use."""
-    return f"linkwork.families.{_package(loop)}.{loop}" in sys.modules
+    return f"linkwork.families.{loop}" in sys.modules
 
 
 def is_compiled(loop: str) -> bool:
@@ -62,32 +59,16 @@ def sources_digest() -> bytes:
     return digest.digest()
 
 
-def loop_serves(loop: str, positions: int) -> bool:
-    """Whether a loop that others can replace saves time for this many positions."""
-    return is_loaded(loop) or positions >= _PAYS or _was_compiled(loop)
-
-
-@cache
-def _was_compiled(loop: str) -> bool:
-    """Whether a loop was compiled when it was first asked for: a look takes as long as a table."""
-    return is_compiled(loop)
-
-
 def _indices(loop: str) -> Iterator[Path]:
     """Numba's index files of a loop."""
     given = os.environ.get("NUMBA_CACHE_DIR")
     shared = Path(given) if given else user_cache("numba", False)
-    package = _package(loop)
+    package, module = loop.split(".")
     folders = list(shared.glob(f"{package}_*"))
     if not given:
         folders.append(Path(__file__).parents[1] / package / "__pycache__")
     for folder in folders:
-        yield from folder.glob(f"{loop}.{_FUNCTIONS[loop]}-*.nbi")
-
-
-def _package(loop: str) -> str:
-    """The package of kernels that a loop belongs to."""
-    return _FOLDERS.get(loop, "march")
+        yield from folder.glob(f"{module}.{LOOPS[loop]}-*.nbi")
 
 
 def say_that_it_compiles(loop: str = "") -> None:
@@ -95,7 +76,7 @@ def say_that_it_compiles(loop: str = "") -> None:
 
     Without a loop: whether what all of them share was compiled, with any of them.
     """
-    if not any(map(is_compiled, (loop,) if loop else _FUNCTIONS)):
+    if not any(map(is_compiled, (loop,) if loop else LOOPS)):
         _warn_that_it_compiles()
 
 
@@ -139,11 +120,7 @@ def is_cached(source: str) -> bool:
 
 
 def _path(name: str) -> Path:
-    return _folder() / f"{name.rpartition('.')[2]}.py"
-
-
-def _folder() -> Path:
-    return cache_folder("kernels")
+    return cache_folder("kernels") / f"{name}.py"
 
 
 def _name(source: str) -> str:

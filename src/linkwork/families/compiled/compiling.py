@@ -45,10 +45,13 @@ __all__ = [
     "memcpy",
     "named_tuple",
     "njit_no_refcount",
+    "numbers",
     "prefetch",
     "trial_at",
+    "truths",
     "types",
     "unfused",
+    "wholes",
 ]
 
 _numba: Any = numba  # whose types do not know of all options
@@ -168,6 +171,21 @@ njit_no_refcount: Compiling = _compiling(None, _nrt=False, **_WITHIN)
 #: short ones, and those that would be compiled for every constant argument.
 inlined: Compiling = _compiling(None, _nrt=False, inline="always")
 say_that_it_compiles()
+
+
+def numbers(axes: int) -> types.Type:
+    """An array of numbers in a signature."""
+    return types.Array(types.float64, axes, "C")
+
+
+def wholes(axes: int) -> types.Type:
+    """An array of whole numbers in a signature."""
+    return types.Array(types.int64, axes, "C")
+
+
+def truths(axes: int) -> types.Type:
+    """An array of truth values in a signature."""
+    return types.Array(types.boolean, axes, "C")
 
 
 def named_tuple(fields: list[object], kind: type) -> Any:

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import warnings
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
 from importlib.util import find_spec
 from typing import Any, ParamSpec, TypeVar
 
@@ -16,6 +15,7 @@ from linkwork.core.record.printing import PYTHON
 from linkwork.families.compiled.code_cache import load_compiled
 from linkwork.families.compiled.execution import Execution
 from linkwork.families.march.march_programs import (
+    OPTIONS,
     START_STEPS,
     STEPS,
     MarchPrograms,
@@ -140,19 +140,25 @@ def device_source(programs: MarchPrograms, state: ThreadState, certified: bool) 
     certified : bool
         Whether the programs prove their positions.
     """
-    unknowns, size = programs.registers.named["d0.0"], programs.nodes.shape[1]
-    shape = (
-        f"Shape(unknowns={unknowns}, size={size}, blocks={state.blocks}, "
-        f"coefficients={len(state.coefficients)}, options={len(state.options)}, "
-        f"certified={certified})"
-    )
-    live = [state.place[programs.registers.named[f"live{b}.0"]] for b in range(state.blocks)]
+    named = programs.registers.named
+    first = {"weights": "a1", "good": "good.0", "radius": "radius.0", "live": "live0.0"}
+    sizes = {name: state.place[named[register]] for name, register in first.items()} | {
+        "unknowns": named["d0.0"],
+        "size": programs.nodes.shape[1],
+        "blocks": state.blocks,
+        "coefficients": len(state.coefficients),
+        "options": len(state.options),
+    }
+    numbers = "".join(f"{name}={number}, " for name, number in sizes.items())
+    shape = f"Shape({numbers}certified={certified})"
+    live = [state.place[named[f"live{b}.0"]] for b in range(state.blocks)]
+    proofs = [f"prove{b}(w)" for b in range(len(programs.by_kind["prove"]))]
     functions = [
         *(f"@on_device\n{text}" for text in printed_sections(programs, state, PYTHON)),
         _function("predict", ["reach(w)", "given(w)"]),
         _function("correct", *map(_newton, range(state.blocks), live)),
         _function("correct_slowly", *map(_slowly, range(state.blocks), live)),
-        _function("judge", [f"prove{b}(w)" for b in range(len(programs.prove))], ["agree(w)"]),
+        _function("judge", proofs, ["agree(w)"]),
     ]
     kernels = _KERNELS.format(shape=shape, length=len(state.place))
     return "\n\n".join([_HEAD, *functions, kernels])
@@ -186,11 +192,8 @@ def _while_live(function: str, live: int, most: int) -> list[str]:
 # The march of one topology on a graphics card: designs in chunks, two of them under way.
 
 
-_OPTIONS = ("tolerance", "most_turn", "most_correction", "most_drift")
 _BLOCK = 128  # threads: with 255 registers each two blocks fit one multiprocessor
 _STAGED = 256 << 20  # bytes of results that one chunk brings back
-
-_Kernels = tuple[Any, Any]  # to be indexed with a grid, and called then
 
 
 class DeviceKernel(SweepKernel):
@@ -198,7 +201,8 @@ class DeviceKernel(SweepKernel):
     :class:`linkwork.families.march.sweep_kernel.SweepKernel` for its parameters.
     """
 
-    _kernels: _Kernels | None = None
+    #: ``begin`` and ``march``, to be indexed with a grid and called then.
+    kernels: tuple[Any, ...] = ()
     _chunks: tuple[Chunk, ...] = ()  # of the latest run: page-locked memory is slow to get
 
     def choose_execution(self, execution: Execution) -> None:
@@ -211,12 +215,12 @@ class DeviceKernel(SweepKernel):
         InputError
             Without a graphics card, or if the folder for compiled code cannot be written to.
         """
-        if self._kernels is not None:
+        if self.kernels:
             return
-        self._card = graphics_card()
-        self._state = ThreadState.of(self._sections, _OPTIONS)
-        source = device_source(self._sections, self._state, self.certified)
-        self._kernels = load_compiled(source, "begin"), load_compiled(source, "march")
+        self.card = graphics_card()
+        self.state = ThreadState.of(self._sections, OPTIONS)
+        source = device_source(self._sections, self.state, self.certified)
+        self.kernels = load_compiled(source, "begin"), load_compiled(source, "march")
 
     def run(
         self,
@@ -233,180 +237,116 @@ class DeviceKernel(SweepKernel):
         The march of one chunk runs while results of the chunk before are copied back. Rows that are
         not reached keep arbitrary numbers in ``found``.
         """
-        count, given = len(start), self.guess_nodes(guess, start)
+        count = len(start)
         begun = np.zeros(count, dtype=bool)
         if not count:
             return begun
         results = found._asdict() | {"begun": begun}
         chunks = self._room(len(rows), count)
-        waiting: tuple[Chunk, slice] | None = None
+        waiting: list[tuple[Chunk, slice]] = []
         for k, first in enumerate(range(0, count, chunks[0].designs)):
             chunk, part = chunks[k % 2], slice(first, min(first + chunks[0].designs, count))
-            own = {name: coefficients[name][part] for name in chunk.coefficients}
-            chunk.load(rows, self._options(steps), own, given[:, part])
+            self.load(chunk, part, coefficients, guess, start, rows, steps)
             chunk.launch()
             chunk.send_back()
-            if waiting is not None:
-                waiting[0].collect(results, waiting[1])
-            waiting = chunk, part
-        assert waiting is not None
-        waiting[0].collect(results, waiting[1])
+            waiting.append((chunk, part))
+            if k:
+                before, its_part = waiting.pop(0)
+                before.collect(results, its_part)
+        for chunk, part in waiting:
+            chunk.collect(results, part)
         return begun
 
     def load(
         self,
         chunk: Chunk,
+        part: slice,
         coefficients: Mapping[str, Array],
         guess: Array,
         start: Array,
         rows: Array,
         steps: Steps,
     ) -> None:
-        """Fill a chunk with the first designs; see :meth:`run`."""
-        part = slice(0, chunk.designs)
-        own = {name: coefficients[name][part] for name in chunk.coefficients}
+        """Fill a chunk with some designs; see :meth:`run`.
+
+        Room that is left over is filled with guesses that lead nowhere.
+        """
         given = self.guess_nodes(guess[:, part], start[part])
-        chunk.load(rows, self._options(steps), own, given)
+        count = given.shape[1]
+        design = np.ones((len(self.state.coefficients), chunk.designs))
+        nodes = np.full((len(given), chunk.designs), np.nan)
+        for j, name in enumerate(self.state.coefficients):
+            design[j, :count] = coefficients[name][part]
+        nodes[:, :count] = given
+        options = np.array([getattr(steps, name) for name in self.state.options])
+        values = (design, nodes, np.ascontiguousarray(rows), steps.sizes, options)
+        for array, value in zip(chunk.inputs.values(), values, strict=True):
+            array.copy_to_device(value, stream=chunk.stream)
 
     def chunk(self, rows: int, designs: int) -> Chunk:
         """Room on the device for some designs over some rows."""
-        self.choose_execution(Execution())
-        assert self._kernels is not None
-        shape = _Shape(
-            unknowns=self.table.unknowns,
-            size=self.nodes.shape[1],
-            rows=rows,
-            designs=designs,
-            certified=self.certified,
-        )
-        return Chunk.on(self._card, self._kernels, self._state, shape)
-
-    def _options(self, steps: Steps) -> tuple[Array, Array]:
-        options = [getattr(steps, name) for name in self._state.options]
-        return np.array([steps.first, steps.largest, steps.smallest]), np.array(options)
+        return Chunk(self, rows, designs)
 
     def _room(self, rows: int, count: int) -> tuple[Chunk, ...]:
         """One chunk for all designs, or two equal ones that are used in turn."""
-        self.choose_execution(Execution())
-        each = 8 * (rows * (self.table.unknowns + 2) + len(self._state.coefficients))
+        each = 8 * (rows * (self.table.unknowns + 2) + len(self.state.coefficients))
         each += 8 * (6 * self.nodes.shape[1] + 4)
-        free = self._card.current_context().get_memory_info().free
+        free = self.card.current_context().get_memory_info().free
         free += sum(chunk.designs * each for chunk in self._chunks)
-        most = max(1, int(min(_STAGED, free / 4) // each))
-        parts = -(-count // most)
-        designs = -(-count // parts)
-        known = self._chunks
-        if not (
-            known
-            and len(known) >= min(parts, 2)
-            and (known[0].designs, known[0].rows) == (designs, rows)
-        ):
+        parts = -(-count // max(1, int(min(_STAGED, free / 4) // each)))
+        sizes = [(-(-count // parts), rows)] * min(parts, 2)
+        if [(chunk.designs, chunk.rows) for chunk in self._chunks] != sizes:
             self._chunks = ()  # given back before more is asked for
-            self._chunks = tuple(self.chunk(rows, designs) for _ in range(min(parts, 2)))
+            self._chunks = tuple(self.chunk(rows, designs) for designs, _ in sizes)
         return self._chunks
 
 
-@dataclass(frozen=True, kw_only=True)
-class _Shape:
-    """Sizes of a chunk's arrays; ``size``: numbers of a node."""
-
-    unknowns: int
-    size: int
-    rows: int
-    designs: int
-    certified: bool
-
-    @property
-    def outputs(self) -> dict[str, tuple[tuple[int, ...], type]]:
-        """Results by their names in :class:`MarchResult`, and which designs begin."""
-        radii = self.rows if self.certified else 1  # unused, because nothing has no address
-        return {
-            "unknowns": ((self.unknowns, self.rows, self.designs), np.float64),
-            "radius": ((radii, self.designs), np.float64),
-            "reached": ((self.rows, self.designs), np.bool_),
-            "begun": ((self.designs,), np.bool_),
-            "end": ((2, self.designs), np.float64),
-            "last": ((2, 2 * self.size, self.designs), np.float64),
-        }
-
-
-@dataclass(frozen=True, kw_only=True, eq=False)
 class Chunk:
     """Designs on a graphics card, and where their results are brought back to.
 
     Parameters
     ----------
-    designs, rows : int
+    kernel : DeviceKernel
+    rows, designs : int
         How many there is room for.
-    kernels, stream
-        ``begin`` and ``march`` of a topology, and the stream they run in.
-    coefficients : tuple of str
-        The names that the kernels read, in their order.
+
+    Attributes
+    ----------
     inputs : dict of device arrays
         ``design`` (C, M), ``given`` (S, M), ``rows`` (R,), ``steps`` (3,), ``options`` (O,).
     node : device array
         Where mechanisms start, (S, M).
     outputs, staged : dict
-        Results by their names in ``_Shape.outputs``, on the device; in page-locked memory those
-        that are brought back.
+        Results by their names in :class:`MarchResult`, and which designs begin, on the device; in
+        page-locked memory those that are brought back.
     """
 
-    designs: int
-    rows: int
-    kernels: _Kernels
-    stream: Any
-    coefficients: tuple[str, ...]
-    inputs: dict[str, Any]
-    node: Any
-    outputs: dict[str, Any]
-    staged: dict[str, Any]
-
-    @classmethod
-    def on(cls, card: Any, kernels: _Kernels, state: ThreadState, shape: _Shape) -> Chunk:
-        """Room on a card."""
+    def __init__(self, kernel: DeviceKernel, rows: int, designs: int) -> None:
+        card, state, size = kernel.card, kernel.state, kernel.nodes.shape[1]
+        self.designs, self.rows = designs, rows
+        self.kernels, self.stream = kernel.kernels, card.stream()
         inputs = {
-            "design": (len(state.coefficients), shape.designs),
-            "given": (shape.size, shape.designs),
-            "rows": (shape.rows,),
+            "design": (len(state.coefficients), designs),
+            "given": (size, designs),
+            "rows": (rows,),
             "steps": (3,),
             "options": (len(state.options),),
         }
-        return cls(
-            designs=shape.designs,
-            rows=shape.rows,
-            kernels=kernels,
-            stream=card.stream(),
-            coefficients=state.coefficients,
-            inputs={name: card.device_array(own, np.float64) for name, own in inputs.items()},
-            node=card.device_array((shape.size, shape.designs), np.float64),
-            outputs={name: card.device_array(*own) for name, own in shape.outputs.items()},
-            staged={
-                name: card.pinned_array(*own)
-                for name, own in shape.outputs.items()
-                if shape.certified or name != "radius"
-            },
-        )
-
-    def load(
-        self,
-        rows: Array,
-        steps: tuple[Array, Array],
-        coefficients: Mapping[str, Array],
-        given: Array,
-    ) -> None:
-        """Coefficients by register (m,) and guesses (S, m) of m ≤ ``designs`` designs.
-
-        ``steps``: their sizes, and the other options. Room that is left over is filled with guesses
-        that lead nowhere.
-        """
-        design = np.ones(self.inputs["design"].shape)
-        guess = np.full(self.inputs["given"].shape, np.nan)
-        for j, name in enumerate(self.coefficients):
-            design[j, : given.shape[1]] = coefficients[name]
-        guess[:, : given.shape[1]] = given
-        values = (design, guess, np.ascontiguousarray(rows), *steps)
-        for name, value in zip(self.inputs, values, strict=True):
-            self.inputs[name].copy_to_device(value, stream=self.stream)
+        radii = rows if kernel.certified else 1  # unused, because nothing has no address
+        outputs: dict[str, tuple[tuple[int, ...], type]] = {
+            "unknowns": ((kernel.table.unknowns, rows, designs), np.float64),
+            "radius": ((radii, designs), np.float64),
+            "reached": ((rows, designs), np.bool_),
+            "begun": ((designs,), np.bool_),
+            "end": ((2, designs), np.float64),
+            "last": ((2, 2 * size, designs), np.float64),
+        }
+        self.inputs = {name: card.device_array(own, np.float64) for name, own in inputs.items()}
+        self.node = card.device_array((size, designs), np.float64)
+        self.outputs = {name: card.device_array(*own) for name, own in outputs.items()}
+        if not kernel.certified:
+            del outputs["radius"]
+        self.staged = {name: card.pinned_array(*own) for name, own in outputs.items()}
 
     def launch(self) -> None:
         """Let the device begin and march."""

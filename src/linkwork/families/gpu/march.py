@@ -22,22 +22,12 @@ from collections.abc import Callable
 from typing import NamedTuple
 
 from linkwork.core.foundation.arrays import Array, BoolArray
-from linkwork.core.numerics.marching import (
-    HALF,
-    aim,
-    grow,
-    hermite_weights,
-    is_lost,
-    is_same_spacing,
-    keep_spacing,
-    stride,
-    trusted_nodes,
-)
+from linkwork.core.numerics import marching
 from linkwork.core.record.recorder import ROLES
 from linkwork.families.compiled.interpreter import sin_cos as sine_sin_cos
 from linkwork.families.gpu.kernel import kernel, numba_cuda, on_device
 from linkwork.families.march.march_programs import NODES
-from linkwork.families.march.step_trial import InputTable, MarchResult
+from linkwork.families.march.step_trial import InputTable, MarchResult, row_from
 
 __all__ = [
     "InputTable",
@@ -55,14 +45,16 @@ __all__ = [
 
 cuda = numba_cuda()
 sin_cos = on_device(sine_sin_cos.py_func)
-_aim = on_device(aim)
-_stride = on_device(stride)
-_is_lost = on_device(is_lost)
-_grow = on_device(grow)
-_trusted_nodes = on_device(trusted_nodes)
-_hermite_weights = on_device(hermite_weights)
-_is_same_spacing = on_device(is_same_spacing)
-_keep_spacing = on_device(keep_spacing)
+_aim = on_device(marching.aim)
+_stride = on_device(marching.stride)
+_is_lost = on_device(marching.is_lost)
+_grow = on_device(marching.grow)
+_trusted_nodes = on_device(marching.trusted_nodes)
+_hermite_weights = on_device(marching.hermite_weights)
+_is_same_spacing = on_device(marching.is_same_spacing)
+_keep_spacing = on_device(marching.keep_spacing)
+_HALF = marching.HALF
+_row_from = on_device(row_from.py_func)
 
 
 class Sections(NamedTuple):
@@ -92,10 +84,15 @@ class Start(NamedTuple):
 class Shape(NamedTuple):
     """How a thread's state is laid out.
 
-    ``unknowns``, and the ``size`` S of a position; how many ``blocks``, ``coefficients`` and
-    ``options``; ``certified``: whether steps are proved.
+    The first places of ``weights``, ``good``, ``radius`` and ``live``; ``unknowns``, and the
+    ``size`` S of a position; how many ``blocks``, ``coefficients`` and ``options``; ``certified``:
+    whether steps are proved.
     """
 
+    weights: int
+    good: int
+    radius: int
+    live: int
     unknowns: int
     size: int
     blocks: int
@@ -105,29 +102,9 @@ class Shape(NamedTuple):
 
 
 @on_device
-def _weights(shape: Shape) -> int:
-    return ROLES * shape.size
-
-
-@on_device
-def _good(shape: Shape) -> int:
-    return ROLES * shape.size + 2 * NODES
-
-
-@on_device
-def _radius(shape: Shape) -> int:
-    return ROLES * shape.size + 2 * NODES + 1
-
-
-@on_device
-def _live(shape: Shape) -> int:
-    return ROLES * shape.size + 2 * NODES + 2
-
-
-@on_device
 def _load(shape: Shape, w: Array, start: Start) -> None:
     """A mechanism, with all nodes where it starts."""
-    first = _live(shape) + shape.blocks
+    first = shape.live + shape.blocks
     for j in range(shape.coefficients):
         w[first + j] = start.design[j, start.member]
     for j in range(shape.options):
@@ -138,26 +115,22 @@ def _load(shape: Shape, w: Array, start: Start) -> None:
 
 
 @on_device
-def _weigh(shape: Shape, w: Array, t: float, times: Array, known: int) -> None:
-    """The weights of the prediction at t from the ``known`` last nodes."""
+def _weigh(shape: Shape, w: Array, times: Array, step: float, known: int, spacing: Array) -> None:
+    """The weights of the prediction, computed anew where the spacing has changed.
+
+    ``times``: of the last nodes, of which ``known`` can be used.
+    """
+    if _is_same_spacing(step, times, spacing):
+        return
+    _keep_spacing(step, times, spacing)
+    t = times[0] + step
     used = _trusted_nodes(t, times, known)
     for i in range(NODES):
         value, slope = 0.0, 0.0
         if i < used:
             value, slope = _hermite_weights(t, times, i, used)  # eq. (18)
-        w[_weights(shape) + 2 * i] = value
-        w[_weights(shape) + 2 * i + 1] = slope
-
-
-@on_device
-def _choose(shape: Shape, w: Array, times: Array, step: float, known: int, spacing: Array) -> None:
-    """The weights of the prediction, computed anew where the spacing has changed.
-
-    ``times``: of the last nodes.
-    """
-    if not _is_same_spacing(step, times, spacing):
-        _keep_spacing(step, times, spacing)
-        _weigh(shape, w, times[0] + step, times, known)
+        w[shape.weights + 2 * i] = value
+        w[shape.weights + 2 * i + 1] = slope
 
 
 @on_device
@@ -171,9 +144,9 @@ def begin(
     """
     _load(shape, w, start)
     for j in range(2 * NODES):
-        w[_weights(shape) + j] = 0.0
-    w[_weights(shape)] = 1.0
-    w[_good(shape)] = 1.0
+        w[shape.weights + j] = 0.0
+    w[shape.weights] = 1.0
+    w[shape.good] = 1.0
     sections.predict(w)
     sections.correct_slowly(w)
     if shape.certified:
@@ -181,26 +154,13 @@ def begin(
             for j in range(shape.size):
                 w[shape.size + j] = w[j]
             sections.judge(w)
-    fine = w[_good(shape)] > 0.5
+    fine = w[shape.good] > 0.5
     for k in range(shape.blocks):
-        fine = fine and w[_live(shape) + k] == 0.0
+        fine = fine and w[shape.live + k] == 0.0
     for j in range(shape.size):
         fine = fine and math.isfinite(w[j])
         node[j, start.member] = w[j]
     begun[start.member] = fine
-
-
-@on_device
-def _first_row(rows: Array, t: float, way: int) -> int:
-    """The first row ahead of t, or at t where the way leads upwards."""
-    low, high = 0, rows.shape[0]
-    while low < high:
-        middle = (low + high) // 2
-        if rows[middle] < t:
-            low = middle + 1
-        else:
-            high = middle
-    return low if way == 1 else low - 1
 
 
 @on_device
@@ -210,7 +170,7 @@ def _note(shape: Shape, w: Array, row: int, found: MarchResult) -> None:
     for j in range(shape.unknowns):
         found.unknowns[j, row, found.first] = w[j]
     if shape.certified:
-        found.radius[row, found.first] = w[_radius(shape)]
+        found.radius[row, found.first] = w[shape.radius]
 
 
 @on_device
@@ -251,19 +211,21 @@ def follow(
     spacing = cuda.local.array(NODES, "float64")
     for k in range(NODES):
         spacing[k] = math.inf  # equal to no spacing, so that weights are computed
-    row, known, h = _first_row(rows, w[size - 1], way), 1, steps[0]
+    # the first row ahead of t, or at t where the way leads upwards
+    row, known, h = _row_from(w[size - 1], rows), 1, steps[0]
+    row = row if way == 1 else row - 1
     while 0 <= row < rows.shape[0]:
         goal, before = rows[row], w[2 * size - 1]
         step, t = _stride(goal, before, h), _aim(goal, before, h)
         for k in range(NODES):
             times[k] = w[(k + 2) * size - 1]
-        _choose(shape, w, times, step, known, spacing)
+        _weigh(shape, w, times, step, known, spacing)
         w[size - 1] = t
         sections.predict(w)
         sections.correct(w)
         sections.judge(w)
         moved = abs(t - before)
-        if w[_good(shape)] > 0.5 and not _is_lost(t, before, goal):
+        if w[shape.good] > 0.5 and not _is_lost(t, before, goal):
             if t == goal:
                 _note(shape, w, row, found)
                 row += 2 * way - 1
@@ -275,7 +237,7 @@ def follow(
                 for j in range(NODES * size - 1, -1, -1):
                     w[size + j] = w[j]
         else:
-            h = HALF * moved  # eq. (22): halved after a failure
+            h = _HALF * moved  # eq. (22): halved after a failure
             if h < steps[2]:
                 _stop(shape, w, way, found)
                 return

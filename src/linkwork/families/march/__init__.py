@@ -1,6 +1,6 @@
 """One march along a path of inputs for many mechanisms: programs, loops over lanes, results.
 
-The three loops over lanes are compiled when each is first used.
+The two loops over lanes are compiled when each is first used.
 """
 
 from __future__ import annotations
@@ -12,10 +12,5 @@ from linkwork.core.foundation.loading import loader
 if TYPE_CHECKING:
     from linkwork.families.march.independent import march as march
     from linkwork.families.march.lockstep import in_step as in_step
-    from linkwork.families.march.rowwise import (
-        DONE as DONE,
-        NOT_NEAR as NOT_NEAR,
-        by_rows as by_rows,
-    )
 else:
     __getattr__ = loader(__name__)

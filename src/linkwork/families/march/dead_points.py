@@ -26,14 +26,12 @@ import numpy as np
 from linkwork.core.foundation.arrays import Array, BoolArray, IndexArray
 from linkwork.core.foundation.rounding import UNIT_ROUNDOFF
 from linkwork.core.record.block_proof import BlockProof
-from linkwork.core.record.closure import BlockPart, Closure, solve_linear
+from linkwork.core.record.closure import BlockPart, Closure, solve_linear, weight_of
 from linkwork.core.record.recorder import (
     LANES,
     Code,
-    Program,
     Recorder,
     Registers,
-    Value,
     lower_program,
     reserve,
 )
@@ -58,12 +56,7 @@ class FoldPrograms:
 
     registers: Registers
     height: int
-    iterate: Program
-    move: Program
-    prove: Program
-    between: Program
-    advance: Program
-    aside: Program
+    code: Mapping[str, Code]
 
 
 class _FoldWriter:
@@ -78,9 +71,6 @@ class _FoldWriter:
         variables = [rec.input(f"v{k}") for k in range(self.n + 1)]
         return Closure(self.table, self.part, rec, variables, self.zeros)
 
-    def _scale(self, rec: Recorder, k: int) -> Value:
-        return rec.constant(1.0) if self.table.is_angle[k] else rec.input(f"scale{k}")
-
     def iterate(self) -> Recorder:
         """One step with λ held, and the rates of the others by λ."""
         rec = Recorder()
@@ -90,7 +80,7 @@ class _FoldWriter:
         change, moved = solve_linear(rec, matrix, [closure.residual(), drives]).columns
         live, sizes = rec.input("live"), []
         for d, r, k in zip(change, moved, self.part.unknowns, strict=True):
-            sizes.append(rec.divide(rec.absolute(d), self._scale(rec, k)))
+            sizes.append(rec.divide(rec.absolute(d), closure.scale(k)))
             rec.write(f"v{k}", rec.where(live, closure.v[k] - d, closure.v[k]))
             rec.write(f"r{k}", rec.where(live, -r, rec.input(f"r{k}")))
         size = rec.largest(sizes)
@@ -106,11 +96,11 @@ class _FoldWriter:
         slope, slope0 = rec.input(f"r{self.n}"), rec.input("slope0")
         seeking = rec.input("seeking")
         bend = (slope - slope0) / (here - before)  # eq. (37)
-        far = _FARTHEST * self._scale(rec, self.lead)
+        far = _FARTHEST * weight_of(rec, self.table, self.lead)
         wanted = -(slope / bend)  # eq. (37)
         # far from the dead point the secant may lead out of the arc
         change = rec.largest([rec.smallest([wanted, far]), -far])
-        moved = rec.divide(rec.absolute(change), self._scale(rec, self.lead))
+        moved = rec.divide(rec.absolute(change), weight_of(rec, self.table, self.lead))
         rec.write("bend", rec.where(seeking, bend, rec.input("bend")))
         rec.write("move", rec.where(seeking, moved, rec.input("move")))
         rec.write("lead0", rec.where(seeking, here, before))
@@ -127,8 +117,7 @@ class _FoldWriter:
         """Prove that the place reached lies on the curve of the previous one (first: the node)."""
         rec = Recorder()
         closure = self._closure(rec)
-        used = (*self.part.unknowns, *closure.known())
-        proof = BlockProof(closure, {k: self._scale(rec, k) for k in used})
+        proof = BlockProof(closure)
         here, node = closure.v[self.lead], rec.input(f"w{self.lead}")
         near = rec.absolute(here) * (4.0 * UNIT_ROUNDOFF)
         # a node's own λ is known as well as its position
@@ -179,7 +168,7 @@ class _FoldWriter:
         bend = rec.absolute(rec.input("bend"))
         away = rec.sqrt(rec.divide(_CLEARLY * rec.input(f"x{self.n}"), bend))
         here = rec.input(f"w{self.lead}")
-        least = _LEAST * self._scale(rec, self.lead)
+        least = _LEAST * weight_of(rec, self.table, self.lead)
         away = rec.largest([away, least])
         rec.write(f"v{self.lead}", here + rec.input("side") * away)
         for k in self.part.unknowns:
@@ -198,14 +187,8 @@ def fold_programs(table: LoopTable, lead: int, zeros: Set[str] = frozenset()) ->
         The unknown that leads.
     """
     writer = _FoldWriter(table, lead, zeros)
-    recorded = {
-        "iterate": writer.iterate(),
-        "move": writer.move(),
-        "prove": writer.prove(),
-        "between": writer.between(),
-        "advance": writer.advance(),
-        "aside": writer.aside(),
-    }
+    names = ("iterate", "move", "prove", "between", "advance", "aside")
+    recorded: dict[str, Recorder] = {name: getattr(writer, name)() for name in names}
     registers = Registers()
     for rec in recorded.values():
         reserve(rec, registers)
@@ -214,8 +197,8 @@ def fold_programs(table: LoopTable, lead: int, zeros: Set[str] = frozenset()) ->
     }
     return FoldPrograms(
         registers=registers,
-        height=max(program.height for program in programs.values()),
-        **programs,
+        height=max(registers.count, *(program.height for program in programs.values())),
+        code={name: program.code for name, program in programs.items()},
     )
 
 
@@ -248,24 +231,15 @@ class LastNodes:
     x: Array
 
 
-@dataclass(frozen=True, kw_only=True, eq=False)
-class Folds:
-    """``t`` (D,): of the dead point. ``found`` (D,): whether it is proved to be one, and joined to
-    the node.
-    """
-
-    t: Array
-    found: BoolArray
-
-
 def dead_points(
     table: LoopTable,
     zeros: Set[str],
     coefficients: Mapping[str, Array],
     nodes: LastNodes,
     way: int,
-) -> Folds:
-    """The dead point right ahead of every node, downwards (way 0) or upwards (1).
+) -> Array:
+    """The dead point right ahead of every node, downwards (way 0) or upwards (1), t (D,); NaN where
+    none is proved to be one, and joined to the node.
 
     Parameters
     ----------
@@ -278,12 +252,11 @@ def dead_points(
     scale = np.stack([coefficients.get(f"scale{k}", np.ones(count)) for k in range(n)])
     with np.errstate(invalid="ignore"):
         leads = np.argmax(np.abs(nodes.s) / scale, axis=0)  # eq. (35)
-    found = Folds(t=np.full(count, np.nan), found=np.zeros(count, dtype=bool))
+    t = np.full(count, np.nan)
     for lead in np.unique(leads):
         mine = np.flatnonzero(leads == lead)
-        _led_by(table, int(lead), zeros, coefficients, nodes, mine, way, found)
-    found.found[:] &= (found.t >= nodes.t) if way else (found.t <= nodes.t)
-    return found
+        t[mine] = _led_by(table, int(lead), zeros, coefficients, nodes, mine, way)
+    return np.where((t >= nodes.t) if way else (t <= nodes.t), t, np.nan)
 
 
 def _led_by(
@@ -294,8 +267,8 @@ def _led_by(
     nodes: LastNodes,
     mine: IndexArray,
     way: int,
-    found: Folds,
-) -> None:
+) -> Array:
+    """The dead points of designs that the same unknown leads to them."""
     programs = fold_programs(table, lead, zeros)
     n = table.unknowns
     own = {name: values[mine] for name, values in coefficients.items()}
@@ -303,7 +276,7 @@ def _led_by(
     others = [k for k in range(n + 1) if k != lead]
     named = ["step", "move", "bend", "live", "seeking", "good", "sound"]
     named += [*(f"v{k}" for k in range(n + 1)), *(f"{r}{k}" for k in others for r in "re")]
-    out = dict(zip(named, _Runner(programs, own | at_node).search(named), strict=True))
+    out = _Runner(programs, own | at_node).solved("move", _PLACES, named)
     size = own.get(f"scale{lead}", np.ones(len(mine)))
     with np.errstate(invalid="ignore"):
         fine = (out["live"] == 0.0) & (out["seeking"] == 0.0) & (out["sound"] > 0.5)
@@ -322,7 +295,7 @@ def _led_by(
     for k in left:
         v = np.array([out[f"v{j}"][k] for j in range(n + 1)])
         out[f"v{n}"][k] = _exact(table, {name: values[k] for name, values in own.items()}, v, lead)
-    found.t[mine], found.found[mine] = np.where(fine, out[f"v{n}"], np.nan), fine
+    return np.where(fine, out[f"v{n}"], np.nan)
 
 
 def _turns(
@@ -344,10 +317,11 @@ def _turns(
     turns = np.ones(len(left), dtype=bool)
     for side in (-1.0, 1.0):
         runner = _Runner(programs, given | {"side": np.full(len(left), side)})
-        good, beside, off = runner.beside(["good", f"v{n}", f"e{n}"])
+        beside = runner.solved("aside", 1, ["good", f"v{n}", f"e{n}"])
         with np.errstate(invalid="ignore"):
             # eq. (40) by values of t instead of its rates
-            turns &= (good > 0.5) & (sign * (t - beside) > error + off)
+            turns &= sign * (t - beside[f"v{n}"]) > error + beside[f"e{n}"]
+        turns &= beside["good"] > 0.5
     return turns
 
 
@@ -401,64 +375,30 @@ class _Runner:
         names = [name for name in given if name in named]
         self.places = np.array([named[name] for name in names], dtype=np.intp)
         self.given = np.stack([given[name] for name in names])
-        self.space = self.registers.filled(max(programs.height, self.registers.count), LANES)
+        self.space = self.registers.filled(programs.height, LANES)
         self.space[named["tolerance"]], self.space[named["close"]] = _TOLERANCE, _CLOSE
 
-    def search(self, wanted: Sequence[str]) -> Array:
-        """Registers (W, D) when the dead points are found, and the arcs to them tried in one."""
-        programs = self.programs
+    def solved(self, first: str, most: int, wanted: Sequence[str]) -> dict[str, Array]:
+        """Registers (D,) after a program has chosen at most so many places, each solved, and the
+        arc to the last one was tried in one.
+        """
+        code = self.programs.code
         out = np.empty((len(wanted), self.given.shape[1]))
         live, seeking = self.registers.all_of(["live", "seeking"])
-        _search(
-            programs.iterate.code,
-            programs.move.code,
-            programs.prove.code,
-            self.space,
-            live,
-            seeking,
-            self.registers.all_of(wanted),
-            self.places,
-            self.given,
-            out,
-        )
-        return out
-
-    def beside(self, wanted: Sequence[str]) -> Array:
-        """Registers (W, D) at a place near another one, and whether the arc to it is proved."""
-        programs = self.programs
-        out = np.empty((len(wanted), self.given.shape[1]))
-        _beside(
-            programs.aside.code,
-            programs.iterate.code,
-            programs.prove.code,
-            self.space,
-            self.registers.named["live"],
-            self.registers.all_of(wanted),
-            self.places,
-            self.given,
-            out,
-        )
-        return out
+        _solve_places(
+            code[first], code["iterate"], code["prove"], self.space, live, seeking, most,
+            self.registers.all_of(wanted), self.places, self.given, out,
+        )  # fmt: skip
+        return dict(zip(wanted, out, strict=True))
 
     def proved_in(self, parts: int) -> BoolArray:
         """Whether this many parts prove the arcs, (D,)."""
-        programs = self.programs
-        proved = np.zeros(self.given.shape[1], dtype=bool)
+        code, proved = self.programs.code, np.zeros(self.given.shape[1], dtype=bool)
         live, good, along = self.registers.all_of(["live", "good", "along"])
         _prove_in_parts(
-            programs.between.code,
-            programs.iterate.code,
-            programs.prove.code,
-            programs.advance.code,
-            self.space,
-            live,
-            good,
-            along,
-            self.places,
-            self.given,
-            parts,
-            proved,
-        )
+            code["between"], code["iterate"], code["prove"], code["advance"], self.space, live,
+            good, along, self.places, self.given, parts, proved,
+        )  # fmt: skip
         return proved
 
 
@@ -497,50 +437,31 @@ def _store(w: Array, wanted: IndexArray, base: int, out: Array) -> None:
 
 
 @compiled
-def _search(
+def _solve_places(
+    first: Code,
     iterate: Code,
-    move: Code,
     prove: Code,
     w: Array,
     live: int,
     seeking: int,
+    most: int,
     wanted: IndexArray,
     places: IndexArray,
     given: Array,
     out: Array,
 ) -> None:
-    """LANES designs at a time: secant steps along the curve, a last solution, the proof."""
+    """LANES designs at a time: places chosen by the first program and solved, until none is sought
+    or there were ``most`` of them; the proof of the arc to the last one.
+    """
     count = given.shape[1]
     for base in range(0, count, LANES):
         _load(w, places, given, base)
         w[seeking, :] = 1.0
-        for _ in range(_PLACES):
-            run(move, w)
+        for _ in range(most):
+            run(first, w)
             _solve(iterate, w, live)
             if _is_zero(w, seeking):
                 break
-        run(prove, w)
-        _store(w, wanted, base, out)
-
-
-@compiled
-def _beside(
-    aside: Code,
-    iterate: Code,
-    prove: Code,
-    w: Array,
-    live: int,
-    wanted: IndexArray,
-    places: IndexArray,
-    given: Array,
-    out: Array,
-) -> None:
-    """A place near that in ``w``, and the proof of the arc to it."""
-    count = given.shape[1]
-    for base in range(0, count, LANES):
-        _load(w, places, given, base)
-        run(aside, w)
-        _solve(iterate, w, live)
         run(prove, w)
         _store(w, wanted, base, out)
 

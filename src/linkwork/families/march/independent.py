@@ -13,11 +13,11 @@ from typing import NamedTuple
 
 import numpy as np
 
-from linkwork.core.foundation.arrays import Array, CountArray, IndexArray
+from linkwork.core.foundation.arrays import Array, IndexArray
 from linkwork.core.numerics.marching import HALF
 from linkwork.core.record.recorder import LANES, ROLES
 from linkwork.families.compiled.code_cache import say_that_it_compiles
-from linkwork.families.compiled.compiling import compiled_for, njit_no_refcount, types
+from linkwork.families.compiled.compiling import compiled_for, njit_no_refcount, numbers, types
 from linkwork.families.march.march_programs import NODES
 from linkwork.families.march.step_trial import (
     GOOD,
@@ -41,7 +41,7 @@ from linkwork.families.march.step_trial import (
     update_weights,
 )
 
-say_that_it_compiles("independent")
+say_that_it_compiles("march.independent")
 
 _NO_TASK_YET, _NO_TASK_LEFT = -2, -1
 _VECTOR = 8  # lanes that a processor computes at once
@@ -164,12 +164,8 @@ def _take_or_halve_step(
 
 
 @compiled_for(
-    types.void(
-        TOPOLOGY, types.Array(types.float64, 2, "C"),
-        types.Array(types.float64, 2, "C"), INPUT_TABLE, TASKS, types.int64, MARCH_RESULT,
-        types.Array(types.int64, 1, "C"),
-    )
-)  # fmt: skip
+    types.void(TOPOLOGY, numbers(2), numbers(2), INPUT_TABLE, TASKS, types.int64, MARCH_RESULT)
+)
 def march(
     topology: Topology,
     w: Array,
@@ -178,7 +174,6 @@ def march(
     tasks: Tasks,
     count: int,
     found: MarchResult,
-    counts: CountArray,
 ) -> None:
     """Work through all tasks.
 
@@ -191,7 +186,6 @@ def march(
     tasks : Tasks
         The first ``count`` of them.
     found : MarchResult
-    counts : (R,) of a single mechanism: filled with the corrections that rows took; else (0,)
     """
     rows, nodes, size = table.rows, topology.nodes, topology.nodes.shape[1]
     work = _Work(
@@ -229,11 +223,9 @@ def march(
             update_weights(w, i, topology.weights, times, step, work.known[i], work.spacing[i])
         if busy == 0:
             break
-        took = correct_and_judge(topology, turn, w, standing, False, lanes)
+        correct_and_judge(topology, turn, w, standing, False, lanes)
         for i in range(lanes):
             if work.task[i] != _NO_TASK_LEFT:
-                member, row = tasks.member[work.task[i]], work.row[i]
+                member = tasks.member[work.task[i]]
                 _take_or_halve_step(w, i, topology, turn, member, table, work, found)
-                if row < len(counts) and work.row[i] != row:
-                    counts[row] = took
         turn = (turn + 1) % ROLES

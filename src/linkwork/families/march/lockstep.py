@@ -19,7 +19,9 @@ from linkwork.families.compiled.compiling import (
     inlined,
     memcpy,
     njit_no_refcount,
+    numbers,
     prefetch,
+    truths,
     types,
 )
 from linkwork.families.march.march_programs import NODES
@@ -40,7 +42,7 @@ from linkwork.families.march.step_trial import (
     update_weights,
 )
 
-say_that_it_compiles("lockstep")
+say_that_it_compiles("march.lockstep")
 
 _LINE = 64  # bytes of a cache line
 _LARGEST = 0.5  # of the largest step: further apart, rows have nodes between them
@@ -282,11 +284,9 @@ def _march_one_way(
 
 @compiled_for(
     types.int64(
-        TOPOLOGY, types.Array(types.float64, 2, "C"),
-        types.Array(types.float64, 2, "C"), types.Array(types.float64, 2, "C"),
-        types.Array(types.boolean, 1, "C"), INPUT_TABLE, TASKS, MARCH_RESULT,
+        TOPOLOGY, numbers(2), numbers(2), numbers(2), truths(1), INPUT_TABLE, TASKS, MARCH_RESULT
     )
-)  # fmt: skip
+)
 def in_step(
     topology: Topology,
     w: Array,

@@ -32,7 +32,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from linkwork.core.foundation.arrays import IndexArray
+from linkwork.core.foundation.arrays import Array, IndexArray
 from linkwork.core.foundation.rounding import UNIT_ROUNDOFF
 from linkwork.core.record.block_proof import BlockProof
 from linkwork.core.record.closure import (
@@ -40,8 +40,10 @@ from linkwork.core.record.closure import (
     Closure,
     Phase,
     cosine_and_sine,
+    driven,
     phasor_name,
     solve_linear,
+    weight_of,
 )
 from linkwork.core.record.printing import Body, Language
 from linkwork.core.record.recorder import (
@@ -76,6 +78,11 @@ class Steps:
     most_correction: float = 0.1
     most_drift: float = 0.5
 
+    @property
+    def sizes(self) -> Array:
+        """The first, the largest and the smallest step."""
+        return np.array([self.first, self.largest, self.smallest])
+
     def times(self, size: float) -> Steps:
         """For a path whose natural step is this many times longer: a length for lengths."""
         return replace(
@@ -86,6 +93,8 @@ class Steps:
         )
 
 
+#: Numbers of :class:`Steps` that programs read.
+OPTIONS = ("tolerance", "most_turn", "most_correction", "most_drift")
 NODES = ROLES - 1  # that a prediction can use
 #: Registers of the weights of nodes' values and derivatives in a prediction.
 WEIGHTS = tuple(f"{name}{role}" for role in range(1, ROLES) for name in "ab")
@@ -93,8 +102,9 @@ WEIGHTS = tuple(f"{name}{role}" for role in range(1, ROLES) for name in "ab")
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class MarchPrograms:
-    """``predict`` the trial; the inputs ``given`` there; ``begin`` and ``iterate`` every block,
-    ``damped`` at the start; ``prove`` every block, if asked; ``judge``.
+    """Programs ``by_kind``, in the order in which the march counts them: ``predict`` the trial; the
+    inputs ``given`` there; ``judge``; of every block ``begin``, ``damped`` at the start,
+    ``iterate``, and ``prove`` if asked.
 
     ``nodes`` (5, S): registers of positions by role, the first ones of all. ``noted``: names of
     further results of a trial; ``shared``: those of the given registers that depend on t alone,
@@ -103,29 +113,15 @@ class MarchPrograms:
 
     registers: Registers
     height: int
-    predict: Program
-    given: Program
-    judge: Program
-    begin: tuple[Program, ...]
-    damped: tuple[Program, ...]
-    iterate: tuple[Program, ...]
-    prove: tuple[Program, ...]
+    by_kind: Mapping[str, tuple[Program, ...]]
     nodes: IndexArray
     noted: tuple[str, ...]
     shared: tuple[str, ...]
 
     @property
     def sections(self) -> tuple[Program, ...]:
-        """All programs in the order in which the march counts them."""
-        return (
-            self.predict,
-            self.given,
-            self.judge,
-            *self.begin,
-            *self.damped,
-            *self.iterate,
-            *self.prove,
-        )
+        """All programs in their order."""
+        return tuple(program for programs in self.by_kind.values() for program in programs)
 
     def turned(self, moves: int) -> tuple[Program, ...]:
         """The sections when roles have moved on this many times: the trial is one further down."""
@@ -154,10 +150,6 @@ class _MarchWriter:
         own = [rec.input("t.0")] if self.alone else [rec.input(f"u{j}.0") for j in inputs]
         return [*[rec.input(f"x{k}.0") for k in range(self.n)], *own]
 
-    def _scale(self, rec: Recorder, k: int) -> Value:
-        """The weight of a variable: 1 for angles."""
-        return rec.constant(1.0) if self.table.is_angle[k] else rec.input(f"scale{k}")
-
     def _rate(self, rec: Recorder, j: int) -> Value:
         """By how much an input changes with t."""
         return rec.constant(1.0) if self.alone else rec.input(f"u{j}.rate")
@@ -168,7 +160,7 @@ class _MarchWriter:
 
     def _weigh(self, rec: Recorder, k: int, change: Value) -> Value:
         """|change| of a variable in its weight."""
-        return rec.divide(rec.absolute(change), self._scale(rec, k))
+        return rec.divide(rec.absolute(change), weight_of(rec, self.table, k))
 
     def _closure(self, number: int, rec: Recorder) -> Closure:
         part = self.parts[number]
@@ -214,7 +206,8 @@ class _MarchWriter:
         closure = self._closure(number, rec)
         matrix, sides = closure.jacobian(part.unknowns), [closure.residual()]
         if not self.certified:
-            sides.append(self._drives(closure, rec))  # eq. (11), right side
+            given = {k: self._rate_of_known(rec, k) for k in closure.known()}
+            sides.append(driven(closure, given))  # eq. (11), right side
         answer = solve_linear(rec, matrix, sides)
         change, live = answer.columns[0], rec.input(f"live{number}.0")
         turns = [
@@ -261,21 +254,11 @@ class _MarchWriter:
         (more,) = solve_linear(rec, matrix, [closure.bending(correction, rates)]).columns
         return [rec.subtract(rates[k], m) for k, m in zip(unknowns, more, strict=True)]
 
-    def _drives(self, closure: Closure, rec: Recorder) -> list[Value]:
-        """F_k times the rates of the known variables."""
-        known = closure.known()
-        rates = [self._rate_of_known(rec, k) for k in known]
-        return [
-            rec.total([rec.multiply(x, rate) for x, rate in zip(row, rates, strict=True)])
-            for row in closure.jacobian(known)
-        ]
-
     def prove(self, number: int) -> Recorder:
         """A block's proof: of the trial, and that it lies on the branch of the last node."""
         part, rec = self.parts[number], Recorder()
         closure = self._closure(number, rec)
-        used = (*part.unknowns, *closure.known())
-        proof = BlockProof(closure, {k: self._scale(rec, k) for k in used})
+        proof = BlockProof(closure)
         near: dict[int, Value] = {}
         far: dict[int, Value] = {}
         # the factor covers the rounding of the difference and of the inputs at both ends
@@ -364,38 +347,35 @@ def march_programs(
         Whether every step is proved.
     """
     writer, blocks = _MarchWriter(table, parts, zeros, certified), range(len(parts))
-    recorded = [
-        writer.predict(),
-        writer.given(),
-        writer.judge_proof() if certified else writer.judge(),
-        *[writer.iterate(b, first=True, damped=False) for b in blocks],
-        *[writer.iterate(b, first=False, damped=True) for b in blocks],
-        *[writer.iterate(b, first=False, damped=False) for b in blocks],
-        *[writer.prove(b) for b in blocks if certified],
-    ]
+    recorded = {
+        "predict": [writer.predict()],
+        "given": [writer.given()],
+        "judge": [writer.judge_proof() if certified else writer.judge()],
+        "begin": [writer.iterate(b, first=True, damped=False) for b in blocks],
+        "damped": [writer.iterate(b, first=False, damped=True) for b in blocks],
+        "iterate": [writer.iterate(b, first=False, damped=False) for b in blocks],
+        "prove": [writer.prove(b) for b in blocks if certified],
+    }
+    every = [rec for recorders in recorded.values() for rec in recorders]
     registers = Registers()
     nodes = np.stack([registers.all_of(writer.node_names(role)) for role in range(ROLES)])
-    noted = {name for rec in recorded for name in rec.writes} | {"good.0", "radius.0"}
+    noted = {name for rec in every for name in rec.writes} | {"good.0", "radius.0"}
     noted -= set(writer.node_names(0))
     registers.all_of(sorted(noted))
-    for rec in recorded:
+    for rec in every:
         reserve(rec, registers)
-    programs = [lower_program(rec, registers, registers.count) for rec in recorded]
-    count = len(parts)
-    predict, given, judge, *rest = programs
+    by_kind = {
+        kind: tuple(lower_program(rec, registers, registers.count) for rec in recorders)
+        for kind, recorders in recorded.items()
+    }
+    heights = [program.height for programs in by_kind.values() for program in programs]
     return MarchPrograms(
         registers=registers,
-        height=max(registers.count, *(program.height for program in programs)),
-        predict=predict,
-        given=given,
-        judge=judge,
-        begin=tuple(rest[:count]),
-        damped=tuple(rest[count : 2 * count]),
-        iterate=tuple(rest[2 * count : 3 * count]),
-        prove=tuple(rest[3 * count :]),
+        height=max(registers.count, *heights),
+        by_kind=by_kind,
         nodes=nodes,
         noted=tuple(sorted(noted)),
-        shared=tuple(recorded[1].writes) if writer.alone else (),
+        shared=tuple(recorded["given"][0].writes) if writer.alone else (),
     )
 
 
@@ -428,7 +408,7 @@ class ThreadState:
         """The state that the programs of a topology need; ``options``: names that may be read,
         ``fixed``: coefficients that are written as numbers.
         """
-        named, blocks = programs.registers.named, len(programs.begin)
+        named, blocks = programs.registers.named, len(programs.by_kind["begin"])
         own = {*programs.nodes.ravel().tolist(), *(named[name] for name in programs.noted)}
         noted = ["good.0", "radius.0", *(f"live{b}.0" for b in range(blocks))]
         more = [name for name in programs.noted if name not in noted]
@@ -456,9 +436,12 @@ def printed_sections(
     fixed : Mapping[str, float], optional
         Coefficients that are written as numbers.
     """
-    named = {"reach": programs.predict, "given": programs.given, "agree": programs.judge}
-    for kind in ("begin", "damped", "iterate", "prove"):
-        named |= {f"{kind}{b}": program for b, program in enumerate(getattr(programs, kind))}
+    whole = {"predict": "reach", "given": "given", "judge": "agree"}
+    named = {
+        whole.get(kind, f"{kind}{b}"): program
+        for kind, by_block in programs.by_kind.items()
+        for b, program in enumerate(by_block)
+    }
     registers = programs.registers
     constants = {register: value for value, register in registers.constants.items()}
     constants |= {

@@ -3,8 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Mapping
-from dataclasses import dataclass
+from collections.abc import Mapping
 
 import numpy as np
 
@@ -43,16 +42,21 @@ def at_places(
     (len(reading.wanted), R, D)
     """
     n, rows, count = v.shape
-    ready = _Ready.of(reading, coefficients, n + inputs.shape[1])
-    design = np.array([coefficients[name] for name in ready.used]).reshape(len(ready.used), count)
+    named = reading.registers.named
+    used = [name for name in coefficients if name in named]
+    design = np.array([coefficients[name] for name in used]).reshape(len(used), count)
+    # a variable that the program does not use is loaded into a register of its own
+    spare = max(reading.program.height, reading.registers.count)
+    places = np.array([named[name] for name in used], dtype=np.intp)
+    variables = [named.get(f"v{k}", spare) for k in range(n + inputs.shape[1])]
     found = np.empty((len(reading.wanted), rows, count))
 
     def one(first: int) -> None:
         part = slice(first, first + _PART)
         _evaluate(
-            reading.program.code, ready.space(), ready.places,
-            np.ascontiguousarray(design[:, part]),
-            ready.variables, v[:, :, part], inputs, turns[:, part], ready.wanted,
+            reading.program.code, reading.registers.filled(spare + 1, LANES), places,
+            np.array(variables, dtype=np.intp), np.ascontiguousarray(design[:, part]),
+            v[:, :, part], inputs, turns[:, part], reading.registers.all_of(reading.wanted),
             found[:, :, part],
         )  # fmt: skip
 
@@ -61,47 +65,13 @@ def at_places(
     return found
 
 
-@dataclass(frozen=True, kw_only=True, eq=False)
-class _Ready:
-    """The registers that a program reads and writes, by number.
-
-    ``used``: the coefficients that it reads, at ``places``.
-    """
-
-    reading: PlaceProgram
-    used: list[str]
-    places: IndexArray
-    variables: IndexArray
-    wanted: IndexArray
-    height: int
-
-    @classmethod
-    def of(cls, reading: PlaceProgram, coefficients: Iterable[str], variables: int) -> _Ready:
-        named = reading.registers.named
-        used = [name for name in coefficients if name in named]
-        # a variable that the program does not use is loaded into a register of its own
-        spare = max(reading.program.height, reading.registers.count)
-        return cls(
-            reading=reading,
-            used=used,
-            places=np.array([named[name] for name in used], dtype=np.intp),
-            variables=np.array([named.get(f"v{k}", spare) for k in range(variables)], np.intp),
-            wanted=np.array([named[name] for name in reading.wanted], dtype=np.intp),
-            height=spare + 1,
-        )
-
-    def space(self) -> Array:
-        """A workspace with constants in place."""
-        return self.reading.registers.filled(self.height, LANES)
-
-
 @compiled
 def _evaluate(
     code: Code,
     w: Array,
     places: IndexArray,
-    design: Array,
     variables: IndexArray,
+    design: Array,
     v: Array,
     inputs: Array,
     turns: TurnArray,

@@ -17,10 +17,10 @@ with the rates of all variables that a block knows. Registers by name:
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence, Set
+from collections.abc import Mapping, Sequence, Set
 from dataclasses import dataclass
 
-from linkwork.core.record.closure import BlockPart, Closure, inverse_of, solve_linear, weighted_norm
+from linkwork.core.record.closure import BlockPart, Closure, add_rates, condition_of
 from linkwork.core.record.recorder import (
     Program,
     Recorder,
@@ -43,23 +43,35 @@ class PlaceProgram:
     wanted: tuple[str, ...]
 
 
-class _RateWriter:
-    def __init__(self, table: LoopTable, parts: Sequence[BlockPart], zeros: Set[str]) -> None:
+class PlaceWriter:
+    """Writes programs that compute quantities of a position.
+
+    Parameters
+    ----------
+    table : LoopTable
+        Without function rows.
+    parts : sequence of BlockPart
+        Blocks in the order in which they are solved.
+    zeros : set of str
+        Names of coefficients that are zero in every design.
+    """
+
+    def __init__(
+        self, table: LoopTable, parts: Sequence[BlockPart], zeros: Set[str] = frozenset()
+    ) -> None:
         self.table, self.n = table, table.unknowns
         self.rec = rec = Recorder()
         variables = [rec.input(f"v{k}") for k in range(table.variables)]
         self.closures = [Closure(table, part, rec, variables, zeros) for part in parts]
 
     def finish(self, wanted: Sequence[str]) -> PlaceProgram:
-        """The program, which computes these."""
+        """The program, which computes these registers."""
         registers = Registers()
         reserve(self.rec, registers)
         program = lower_program(self.rec, registers, registers.count)
         return PlaceProgram(program=program, registers=registers, wanted=tuple(wanted))
 
-    # ---------------------------------------------------------------- rates
-
-    def derivatives(self) -> tuple[dict[int, Number], dict[int, Number]]:
+    def derivatives(self) -> tuple[Mapping[int, Number], Mapping[int, Number]]:
         """Both derivatives of all variables by the leading input."""
         inputs = range(self.table.variables - self.n)
         alone = len(inputs) == 1  # a single input leads
@@ -68,54 +80,29 @@ class _RateWriter:
         }
         second: dict[int, Number] = {self.n + j: 0.0 for j in inputs}
         for closure in self.closures:
-            self._block_rates(closure, first, second)
+            add_rates(closure, first, second)
         return first, second
 
     def rates(self) -> list[str]:
-        """Write both derivatives of all unknowns; return the names of the registers."""
-        first, second = self.derivatives()
-        for k in range(self.n):
-            self.rec.write(f"first{k}", first[k])
-            self.rec.write(f"second{k}", second[k])
-        return [f"{name}{k}" for name in ("first", "second") for k in range(self.n)]
+        """Write the first derivatives of all unknowns, then the second ones; the registers."""
+        written = {
+            f"{name}{k}": by_variable[k]
+            for name, by_variable in zip(("first", "second"), self.derivatives(), strict=True)
+            for k in range(self.n)
+        }
+        for name, value in written.items():
+            self.rec.write(name, value)
+        return list(written)
 
-    def _block_rates(
-        self, closure: Closure, first: dict[int, Number], second: dict[int, Number]
-    ) -> None:
-        unknowns, known = closure.part.unknowns, closure.known()
-        matrix, drives = closure.jacobian(unknowns), closure.jacobian(known)
-        side = self._driven(drives, [first[k] for k in known])
-        for k, x in zip(unknowns, self._solution(matrix, side), strict=True):
-            first[k] = -x  # eq. (11)
-        bends = closure.bending(first, first)
-        driven = self._driven(drives, [second[k] for k in known])
-        side = [self.rec.add(x, y) for x, y in zip(bends, driven, strict=True)]
-        for k, x in zip(unknowns, self._solution(matrix, side), strict=True):
-            second[k] = -x  # eq. (12)
-
-    def _solution(self, matrix: list[list[Number]], side: Sequence[Number]) -> list[Value]:
-        return solve_linear(self.rec, matrix, [side]).columns[0]
-
-    def _driven(self, drives: list[list[Number]], rates: list[Number]) -> list[Value]:
-        """Σ dF/dv times the rates of known variables."""
+    def condition(self, lengths: Set[int]) -> list[str]:
+        """The largest condition; ``lengths``: the linear rows that are equations of lengths."""
         rec = self.rec
-        return [
-            rec.total([rec.multiply(x, rate) for x, rate in zip(row, rates, strict=True)])
-            for row in drives
-        ]
-
-    # ---------------------------------------------------------------- evidence
-
-    def evidence(self, lengths: Set[int]) -> list[str]:
-        """Condition and residual; ``lengths``: the linear rows that are equations of lengths."""
-        rec = self.rec
-        conditions = [rec.constant(1.0)]
-        conditions += [self._condition(c, self._scales(c, lengths)) for c in self.closures]
-        rec.write("condition", rec.largest(conditions))
-        return ["condition", *self.residual(lengths)]
+        found = [condition_of(c, self._scales(c, lengths))[0] for c in self.closures]
+        rec.write("condition", rec.largest([1.0, *found]))
+        return ["condition"]
 
     def residual(self, lengths: Set[int]) -> list[str]:
-        """The largest residual alone."""
+        """The largest residual, scaled."""
         rec = self.rec
         residuals = [rec.constant(0.0)]
         for closure in self.closures:
@@ -131,80 +118,3 @@ class _RateWriter:
         length = self.rec.input("length")
         lines = [length if r in lengths else 1.0 for r in closure.lines]
         return [*[length] * (2 * len(closure.loops)), *lines]
-
-    def _weight(self, k: int) -> Value:
-        """Of a variable: 1 for angles."""
-        return self.rec.constant(1.0) if self.table.is_angle[k] else self.rec.input(f"scale{k}")
-
-    def _condition(self, closure: Closure, scales: Sequence[Number]) -> Value:
-        rec = self.rec
-        weights = [self._weight(k) for k in closure.part.unknowns]
-        matrix = closure.jacobian(closure.part.unknowns)
-        inverse, _ = inverse_of(rec, matrix)
-        forward = weighted_norm(rec, matrix, weights, scales)
-        return rec.multiply(forward, weighted_norm(rec, inverse, scales, weights))  # eq. (14)
-
-
-def rate_program(
-    table: LoopTable, parts: Sequence[BlockPart], zeros: Set[str] = frozenset()
-) -> PlaceProgram:
-    """First derivatives of all unknowns, then the second ones.
-
-    Parameters
-    ----------
-    table : LoopTable
-        Without function rows.
-    parts : sequence of BlockPart
-        Blocks in the order in which they are solved.
-    zeros : set of str
-        Names of coefficients that are zero in every design.
-    """
-    writer = _RateWriter(table, parts, zeros)
-    return writer.finish(writer.rates())
-
-
-def quantity_program(
-    table: LoopTable,
-    parts: Sequence[BlockPart],
-    write: Callable[[Recorder, Mapping[int, Number], Mapping[int, Number]], Sequence[str]],
-    zeros: Set[str] = frozenset(),
-) -> PlaceProgram:
-    """What a function writes of the derivatives of all variables; see :func:`rate_program`.
-
-    Parameters
-    ----------
-    write : callable
-        Of the recorder, the first and the second derivatives by variable; it returns the names of
-        the registers that it has written.
-    """
-    writer = _RateWriter(table, parts, zeros)
-    first, second = writer.derivatives()
-    return writer.finish(write(writer.rec, first, second))
-
-
-def evidence_program(
-    table: LoopTable,
-    parts: Sequence[BlockPart],
-    lengths: Set[int],
-    zeros: Set[str] = frozenset(),
-) -> PlaceProgram:
-    """Condition and residual; see :func:`rate_program`.
-
-    Parameters
-    ----------
-    lengths : set of int
-        The linear rows whose residual is a length.
-    """
-    writer = _RateWriter(table, parts, zeros)
-    return writer.finish(writer.evidence(lengths))
-
-
-def drawn_program(
-    table: LoopTable,
-    parts: Sequence[BlockPart],
-    lengths: Set[int],
-    zeros: Set[str] = frozenset(),
-) -> PlaceProgram:
-    """Rates and residual, for a page that solves; see :func:`evidence_program`."""
-    writer = _RateWriter(table, parts, zeros)
-    return writer.finish([*writer.rates(), *writer.residual(lengths)])

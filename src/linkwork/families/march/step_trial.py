@@ -2,42 +2,38 @@
 
 from __future__ import annotations
 
+import math
 from typing import NamedTuple
 
 import numpy as np
 
 from linkwork.core.foundation.arrays import Array, BoolArray, IndexArray
-from linkwork.core.numerics.marching import (
-    aim as step_size_aim,
-    grow as step_size_grow,
-    hermite_weights as prediction_hermite_weights,
-    is_lost as step_size_is_lost,
-    is_same_spacing as prediction_is_same_spacing,
-    keep_spacing as prediction_keep_spacing,
-    stride as step_size_stride,
-    trusted_nodes as prediction_trusted_nodes,
-)
+from linkwork.core.numerics import marching
 from linkwork.core.record.recorder import LANES, ROLES, Code
 from linkwork.families.compiled.compiling import (
     call_at,
     called_by_name,
     carray,
+    compiled_for,
     inlined,
     named_tuple,
     njit_no_refcount,
+    numbers,
+    truths,
     types,
+    wholes,
 )
 from linkwork.families.compiled.interpreter import FIELDS, HIGH, run_part
 from linkwork.families.march.march_programs import START_STEPS, STEPS
 
-aim = njit_no_refcount(step_size_aim)
-stride = njit_no_refcount(step_size_stride)
-is_lost = njit_no_refcount(step_size_is_lost)
-grow = njit_no_refcount(step_size_grow)
-trusted_nodes = njit_no_refcount(prediction_trusted_nodes)
-hermite_weights = njit_no_refcount(prediction_hermite_weights)
-is_same_spacing = njit_no_refcount(prediction_is_same_spacing)
-keep_spacing = njit_no_refcount(prediction_keep_spacing)
+aim = njit_no_refcount(marching.aim)
+stride = njit_no_refcount(marching.stride)
+is_lost = njit_no_refcount(marching.is_lost)
+grow = njit_no_refcount(marching.grow)
+trusted_nodes = njit_no_refcount(marching.trusted_nodes)
+hermite_weights = njit_no_refcount(marching.hermite_weights)
+is_same_spacing = njit_no_refcount(marching.is_same_spacing)
+keep_spacing = njit_no_refcount(marching.keep_spacing)
 
 
 @njit_no_refcount
@@ -109,28 +105,11 @@ class MarchResult(NamedTuple):
     last: Array
 
 
-INPUT_TABLE = named_tuple(
-    [types.Array(types.float64, 1, "C"), types.Array(types.float64, 1, "C"), types.int64],
-    InputTable,
-)
-TASKS = named_tuple(
-    [
-        types.Array(types.int64, 1, "C"),
-        types.Array(types.int64, 1, "C"),
-        types.Array(types.float64, 2, "C"),
-    ],
-    Tasks,
-)
+CODE = types.Array(types.uint32, 2, "C")
+INPUT_TABLE = named_tuple([numbers(1), numbers(1), types.int64], InputTable)
+TASKS = named_tuple([wholes(1), wholes(1), numbers(2)], Tasks)
 MARCH_RESULT = named_tuple(
-    [
-        types.int64,
-        types.Array(types.float64, 3, "C"),
-        types.Array(types.float64, 2, "C"),
-        types.Array(types.boolean, 2, "C"),
-        types.Array(types.float64, 2, "C"),
-        types.Array(types.float64, 3, "C"),
-    ],
-    MarchResult,
+    [types.int64, numbers(3), numbers(2), truths(2), numbers(2), numbers(3)], MarchResult
 )
 
 
@@ -178,18 +157,11 @@ class Topology(NamedTuple):
 
 TOPOLOGY = named_tuple(
     [
-        types.Array(types.uint32, 2, "C"),
-        types.int64,
-        types.Array(types.int64, 2, "C"),
-        types.Array(types.int64, 1, "C"),
-        types.Array(types.int64, 2, "C"),
-        types.Array(types.int64, 1, "C"),
-        types.Array(types.int64, 1, "C"),
-        types.Array(types.int64, 1, "C"),
+        CODE, types.int64, wholes(2), wholes(1), wholes(2), wholes(1), wholes(1), wholes(1),
         types.int64,
     ],
     Topology,
-)
+)  # fmt: skip
 
 
 @inlined
@@ -237,13 +209,12 @@ def _iterate(
     most: int,
     standing: Array,
     lanes: int,
-) -> int:
-    """Newton-Raphson of one block until no lane iterates; how many corrections that took."""
-    for k in range(most):
+) -> None:
+    """Newton-Raphson of one block until no lane iterates."""
+    for _ in range(most):
         if not _any(w, live, standing, lanes):
-            return k
+            break
         _run_program(topology, turn, w, program, lanes)
-    return most
 
 
 @inlined
@@ -284,8 +255,8 @@ def evaluate_inputs(topology: Topology, turn: int, w: Array, together: bool, lan
 @njit_no_refcount
 def run_trial(
     topology: Topology, turn: int, w: Array, standing: Array, together: bool, lanes: int
-) -> int:
-    """From the prediction to the judgement; how many corrections the block with most of them took.
+) -> None:
+    """From the prediction to the judgement.
 
     Parameters
     ----------
@@ -302,10 +273,9 @@ def run_trial(
     if is_written:
         run_compiled_trial(topology, turn, w, lanes)
         if not any_live(topology, w, standing, lanes):
-            return 1
+            return
     else:
         _run_program(topology, turn, w, PREDICT, lanes)
-    most = 0
     for k in range(blocks):
         if not is_written:
             _run_program(topology, turn, w, BLOCKS + k, lanes)
@@ -313,10 +283,8 @@ def run_trial(
             for later in range(k + 1, blocks):
                 w[live[later], :lanes] = 1.0
         program = BLOCKS + 2 * blocks + k
-        more = _iterate(topology, turn, w, program, live[k], STEPS - 1, standing, lanes)
-        most = max(most, more)
+        _iterate(topology, turn, w, program, live[k], STEPS - 1, standing, lanes)
     judge(topology, turn, w, lanes)
-    return 1 + most
 
 
 @inlined
@@ -460,15 +428,16 @@ def _correct_and_judge_at(
         trial,
     )
     w = carray(workspace, (HIGH, LANES))
-    return run_trial(topology, turn, w, carray(standing, (LANES,)), together != 0, lanes)
+    run_trial(topology, turn, w, carray(standing, (LANES,)), together != 0, lanes)
+    return 0
 
 
 @njit_no_refcount
 def correct_and_judge(
     topology: Topology, turn: int, w: Array, standing: Array, together: bool, lanes: int
-) -> int:
+) -> None:
     """:func:`run_trial`, called by name: one copy of it serves all marches."""
-    return _correct_and_judge_at(
+    _correct_and_judge_at(
         (
             topology.code.ctypes.data, topology.length, topology.spans.ctypes.data,
             len(topology.spans), topology.nodes.ctypes.data, topology.nodes.shape[1],
@@ -479,25 +448,41 @@ def correct_and_judge(
     )  # fmt: skip
 
 
-@njit_no_refcount
-def correct_from_guess(
-    topology: Topology, turn: int, w: Array, standing: Array, lanes: int, unknowns: int
-) -> int:
-    """From a guess in the place of the oldest node, the only one that has weight, to a position:
-    how many corrections that took, 0 if not all lanes have converged. The judgement is made, but
-    need not be good.
+# ----------------------------------------------------------------------
+# Where motions begin: every mechanism solved at the input of its guess.
+
+
+@compiled_for(types.void(TOPOLOGY, numbers(2), numbers(2), numbers(2), numbers(2), truths(1)))
+def begin(
+    topology: Topology, w: Array, design: Array, guess: Array, node: Array, found: BoolArray
+) -> None:
+    """Solve every mechanism at its guess's input value.
+
+    Parameters
+    ----------
+    topology : Topology
+    w : (registers, LANES) workspace with constants and options in place
+    design : (C, M) coefficients
+    guess, node : (S, M) the guess, and the node found from it
+    found : (M,) bool, set
     """
-    nodes = topology.nodes
-    if topology.trial == 0:
-        count = correct_and_judge(topology, turn, w, standing, False, lanes)
-        return 0 if any_live(topology, w, standing, lanes) else count
-    evaluate_inputs(topology, turn, w, False, lanes)
-    for k in range(STEPS):
-        run_compiled_trial(topology, turn, w, lanes)
-        if not any_live(topology, w, standing, lanes):
-            return k + 1
-        for k in range(unknowns):
-            guess, trial = nodes[(ROLES - 1 - turn) % ROLES, k], nodes[-turn % ROLES, k]
-            for i in range(lanes):
-                w[guess, i] = w[trial, i]
-    return 0
+    count, nodes, good = design.shape[1], topology.nodes, topology.noted[GOOD]
+    for base in range(0, count, LANES):
+        width = min(LANES, count - base)
+        load_all_lanes(w, topology.coefficients, design, base, width)
+        load_all_lanes(w, nodes[1], guess, base, width)
+        for lane in range(LANES):
+            for role in range(len(nodes)):
+                copy_lane(w, lane, nodes[role], nodes[1])
+            predict_by_tangent(w, lane, topology.weights, 0.0)
+            w[good, lane] = 1.0
+        correct_slowly(topology, w, 1 if width == 1 else LANES)
+        for lane in range(width):
+            member = base + lane
+            fine = w[good, lane] > 0.5
+            for live in topology.noted[LIVE:]:
+                fine &= w[live, lane] == 0.0
+            for j in range(nodes.shape[1]):
+                node[j, member] = w[nodes[0, j], lane]
+                fine &= math.isfinite(node[j, member])
+            found[member] = fine

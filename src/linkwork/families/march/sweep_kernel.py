@@ -4,8 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence, Set
 from contextlib import suppress
-from dataclasses import replace
-from functools import partial
 from typing import Any
 
 import numpy as np
@@ -21,15 +19,8 @@ from linkwork.families import march as loops
 from linkwork.families.compiled.code_cache import is_cached, load_compiled
 from linkwork.families.compiled.execution import Execution
 from linkwork.families.march.dead_points import LastNodes
-from linkwork.families.march.march_programs import WEIGHTS, Steps, march_programs
-from linkwork.families.march.one_design import (
-    LoadedFamily,
-    RowsOfOne,
-    SingleDesign,
-    begin,
-    march_in_turn,
-)
-from linkwork.families.march.step_trial import InputTable, MarchResult, Tasks, Topology
+from linkwork.families.march.march_programs import OPTIONS, WEIGHTS, Steps, march_programs
+from linkwork.families.march.step_trial import InputTable, MarchResult, Tasks, Topology, begin
 
 MOST_DESIGNS = 4096  # designs that one thread works on at a time, at most
 LEAST_LANES = 2  # times LANES: designs in a part where threads share them, at least
@@ -56,12 +47,7 @@ def share_of_threads(count: int, threads: int) -> list[slice]:
 # The march of one topology, ready to run: programs in one array, registers by number.
 
 
-# Up to so many designs are solved one at a time with their rows side by side. Side by side
-# themselves they would leave three quarters of the 64 lanes idle.
-_FEW = LANES // 4
-_SIDE_BY_SIDE = LANES  # rows of one design that fill the lanes
-_FEWER = 4  # both ways of so many fill the lanes that a processor computes at once
-_ROUGHLY = 1e-6  # weighted: the tolerance where a proof corrects once more
+_FEW = 4  # designs: both ways of so many fill the lanes that a processor computes at once
 
 
 class SweepKernel:
@@ -97,8 +83,6 @@ class SweepKernel:
         self.weights = reg.all_of(WEIGHTS)
         self.height = max(programs.height, reg.count)
         self._sections = programs
-        #: The same without proofs; it scouts ahead where rows are side by side.
-        self.scout = SweepKernel(table, parts, zeros, certified=False) if certified else None
         #: The workspace of the steps asked for last; replaced whole, for threads share a kernel.
         self._blank: tuple[Steps, Array] | None = None
         # written out; the loaded one is kept, for its address is used
@@ -140,9 +124,9 @@ class SweepKernel:
 
     def source(self) -> str:
         """A trial of this topology written out: prediction, one correction, proof, judgement."""
-        sections = self._sections
-        ordered = [sections.predict, *sections.begin, *sections.prove, sections.judge]
-        after = [*sections.iterate, *sections.prove, sections.judge]
+        kinds = self._sections.by_kind
+        ordered = [p for kind in ("predict", "begin", "prove", "judge") for p in kinds[kind]]
+        after = [p for kind in ("iterate", "prove", "judge") for p in kinds[kind]]
         kept = {*self.nodes[0].tolist(), *self.noted.tolist(), *registers_read(after)}
         return trial_source(
             [section.code for section in ordered],
@@ -180,15 +164,16 @@ class SweepKernel:
             Designs whose start was found.
         """
         count, given = len(start), self.guess_nodes(guess, start)
-        family, table = self._load_family(coefficients, count), self._table(rows, steps)
-        # few designs cannot fill the lanes; their rows can
-        if count <= _FEW:
-            return self._few(family, coefficients, given, table, steps, found)
+        named = self.registers.named
+        used = [name for name in coefficients if name in named]
+        design = np.array([coefficients[name] for name in used]).reshape(len(used), count)
+        topology = self._topology(np.array([named[name] for name in used], dtype=np.intp))
+        table = InputTable(rows, steps.sizes, self.table.unknowns)
         begun = np.zeros(count, dtype=bool)
 
         def one(part: slice) -> None:
-            own = found._replace(first=part.start)
-            begun[part] = self._part(family.part(part), given[:, part], table, steps, own)
+            own, some = found._replace(first=part.start), np.ascontiguousarray(design[:, part])
+            begun[part] = self._part(topology, some, given[:, part], table, steps, own)
 
         parts = share_of_threads(count, threads)
         share_out(one, parts, min(threads, len(parts)))
@@ -217,26 +202,13 @@ class SweepKernel:
         errors = x if self.certified else np.zeros_like(w)
         return LastNodes(t=found.end[way, where], w=w, s=s, q=q, p=p, x=errors)
 
-    def _coefficient_registers(
-        self, coefficients: Mapping[str, Array], count: int
-    ) -> tuple[IndexArray, Array]:
-        """Registers (C,) of the coefficients that programs use, and their values (C, D)."""
-        named = self.registers.named
-        used = [name for name in coefficients if name in named]
-        values = np.array([coefficients[name] for name in used]).reshape(len(used), count)
-        return np.array([named[name] for name in used], dtype=np.intp), values
-
-    def _load_family(self, coefficients: Mapping[str, Array], count: int) -> LoadedFamily:
-        places, design = self._coefficient_registers(coefficients, count)
-        return LoadedFamily(self._topology(places), design)
-
     def workspace(self, steps: Steps) -> Array:
         """A workspace with constants and options in place."""
         # filling constants takes longer than copying a filled workspace
         blank = self._blank
         if blank is None or blank[0] != steps:
             space = self.registers.filled(self.height, LANES)
-            for name in ("tolerance", "most_turn", "most_correction", "most_drift"):
+            for name in OPTIONS:
                 if name in self.registers.named:
                     space[self.registers.named[name]] = getattr(steps, name)
             blank = self._blank = steps, space
@@ -244,120 +216,30 @@ class SweepKernel:
         own[:] = blank[1]
         return own
 
-    def start_nodes(
-        self, family: LoadedFamily, space: Array, given: Array
-    ) -> tuple[Array, BoolArray]:
-        """Nodes (S, D) where designs start, and whether they do, (D,)."""
-        node, begun = np.empty_like(given), np.zeros(given.shape[1], dtype=bool)
-        given = np.ascontiguousarray(given)
-        begin(family.topology, space, family.design, given, node, begun)
-        return node, begun
-
     def _part(
         self,
-        family: LoadedFamily,
+        topology: Topology,
+        design: Array,
         given: Array,
         table: InputTable,
         steps: Steps,
         found: MarchResult,
     ) -> BoolArray:
-        """Designs side by side."""
-        space = self.workspace(steps)
-        node, begun = self.start_nodes(family, space, given)
-        _march_part(family, space, node, begun, table, found)
-        return begun
-
-    def _table(self, rows: Array, steps: Steps) -> InputTable:
-        sizes = np.array([steps.first, steps.largest, steps.smallest])
-        return InputTable(rows, sizes, self.table.unknowns)
-
-    def _few(
-        self,
-        family: LoadedFamily,
-        coefficients: Mapping[str, Array],
-        given: Array,
-        table: InputTable,
-        steps: Steps,
-        found: MarchResult,
-    ) -> BoolArray:
-        """One design after the other, its rows side by side; then those that this is not for."""
-        done, rows = np.zeros(given.shape[1], dtype=bool), len(table.rows)
-        # whatever this process has compiled: values may not depend on that
-        if rows >= _SIDE_BY_SIDE:
-            alone, n = self._prepare_single(family, coefficients, table, steps), len(given) - 1
-            counts = np.zeros(rows, dtype=np.int64)
-            for k in range(len(done)):
-                guess = np.append(given[: self.table.unknowns, k], given[n, k])
-                own = found._replace(first=k)
-                done[k] = alone.with_design(k).run_side_by_side(guess, own, counts)
-        if done.all():
-            return done
-        space, none = self.workspace(steps), np.zeros(0, np.int64)
-        node, begun = self.start_nodes(family, space, given)
-        left = begun & ~done
-        if np.count_nonzero(left) > _FEWER:
-            _march_part(family, space, node, left, table, found)
+        """March designs (C, M) from their guesses (S, M); which of them start."""
+        space, given = self.workspace(steps), np.ascontiguousarray(given)
+        node, begun = np.empty_like(given), np.zeros(given.shape[1], dtype=bool)
+        begin(topology, space, design, given, node, begun)
+        tasks = Tasks.room(2 * len(begun), len(node))
+        if np.count_nonzero(begun) > _FEW:
+            left = loops.in_step(topology, space, design, node, begun, table, tasks, found)
         else:
-            march_in_turn(family, space, node, left, table, found, none)
-        return done | begun
-
-    def prepare_single(  # noqa: V105  # for tests and benchmarks of rows side by side
-        self,
-        coefficients: Mapping[str, Array],
-        guess: Array,
-        start: float,
-        rows: Array,
-        steps: Steps,
-    ) -> RowsOfOne:
-        """One design's rows, ready to be computed again and again.
-
-        Parameters
-        ----------
-        coefficients : Mapping[str, (1,)]
-            As for :meth:`run`.
-        guess : (n,)
-            Of the unknowns at ``start``.
-        """
-        family = self._load_family(coefficients, 1)
-        table = self._table(rows, steps)
-        loaded = self._prepare_single(family, coefficients, table, steps).with_design(0)
-        size = 2 * self.nodes.shape[1]
-        room = (np.zeros((len(rows), 1), dtype=bool), np.empty((2, 1)), np.empty((2, size, 1)))
-        return RowsOfOne(
-            loaded=loaded,
-            guess=np.append(guess, start),
-            room=room,
-            counts=np.zeros(len(rows), dtype=np.int64),
-            certified=self.certified,
-        )
-
-    def _prepare_single(
-        self,
-        family: LoadedFamily,
-        coefficients: Mapping[str, Array],
-        table: InputTable,
-        steps: Steps,
-    ) -> SingleDesign:
-        count = family.design.shape[1]
-        ahead, scout = family, self.scout or self
-        if self.scout is not None:
-            if self.trial:
-                self.scout.choose_execution(Execution(specialised=True))
-            ahead = self.scout._load_family(coefficients, count)
-        space = self.workspace(steps)
-        ones = np.ones(count)
-        scales = [coefficients.get(f"scale{k}", ones) for k in range(self.table.unknowns)]
-        return SingleDesign(
-            scout=scout,
-            fresh=partial(self.workspace, steps),
-            proving=self,
-            family=family,
-            ahead=ahead,
-            space=space,
-            own=space if scout is self else scout.workspace(replace(steps, tolerance=_ROUGHLY)),
-            table=table,
-            scale=np.ascontiguousarray(np.array(scales).T),
-        )
+            members = np.repeat(np.flatnonzero(begun), 2)
+            left = len(members)
+            tasks.member[:left], tasks.node[:, :left] = members, node[:, members]
+            tasks.way[:left] = np.tile([1, 0], left // 2)
+        if left:
+            loops.march(topology, space, design, table, tasks, left, found)
+        return begun
 
     def _topology(self, coefficients: IndexArray) -> Topology:
         return Topology(
@@ -371,18 +253,3 @@ class SweepKernel:
             coefficients=coefficients,
             trial=self.trial,
         )
-
-
-def _march_part(
-    family: LoadedFamily,
-    space: Array,
-    node: Array,
-    begun: BoolArray,
-    table: InputTable,
-    kept: MarchResult,
-) -> None:
-    tasks = Tasks.room(2 * len(begun), len(node))
-    many = loops.in_step(family.topology, space, family.design, node, begun, table, tasks, kept)
-    if many:
-        none = np.zeros(0, np.int64)
-        loops.march(family.topology, space, family.design, table, tasks, many, kept, none)

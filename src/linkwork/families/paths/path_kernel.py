@@ -41,7 +41,9 @@ from linkwork.families.compiled.compiling import (
     compiled_for,
     named_tuple,
     njit_no_refcount,
+    numbers,
     types,
+    wholes,
 )
 from linkwork.families.compiled.interpreter import run_part
 
@@ -285,11 +287,9 @@ class Care(NamedTuple):
     smallest: float
 
 
-_NUMBERS, _WHOLE = types.Array(types.float64, 1, "C"), types.Array(types.int64, 1, "C")
-_TABLE = types.Array(types.float64, 2, "C")
 _LAYOUT = named_tuple([types.int64] * len(Layout._fields), Layout)
 _CARE = named_tuple([types.float64] * len(Care._fields), Care)
-_ENDS = named_tuple([_TABLE, _TABLE, types.Array(types.int8, 1, "C"), _WHOLE], PathEnds)
+_ENDS = named_tuple([numbers(2), numbers(2), types.Array(types.int8, 1, "C"), wholes(1)], PathEnds)
 
 
 @compiled
@@ -421,9 +421,9 @@ def _close_ranks(lanes: PathLanes, width: int) -> int:
 
 @compiled_for(
     types.void(
-        types.Array(types.uint32, 2, "C"), _LAYOUT, _TABLE, _TABLE, _CARE, _CARE, _ENDS,
+        types.Array(types.uint32, 2, "C"), _LAYOUT, numbers(2), numbers(2), _CARE, _CARE, _ENDS
     )
-)  # fmt: skip
+)
 def follow_paths(
     code: Code, at: Layout, w: Array, start: Array, care: Care, more: Care, ends: PathEnds
 ) -> None:

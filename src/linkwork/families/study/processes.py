@@ -4,8 +4,6 @@
 
 * Its processes run the caller's main module again, so a study in a script without
   ``if __name__ == "__main__"`` ends in an error.
-* The death of one process breaks the pool and fails all running calls; the call that caused it is
-  not known.
 * Its processes hold both ends of their pipes, so they survive a killed run. Ctrl-C reaches them
   too, and their tracebacks reach the terminal.
 
@@ -19,14 +17,12 @@ import pickle
 import subprocess
 import sys
 from collections.abc import Callable
-from concurrent.futures import CancelledError, Future, ThreadPoolExecutor
+from concurrent.futures import Future, ThreadPoolExecutor
 from contextlib import suppress
-from threading import Lock, get_ident
+from threading import local
 from typing import Any, TypeVar
 
 from linkwork.core.foundation.errors import InputError, LinkworkError
-
-_MOST_DEATHS = 3  # deaths of processes on the same call
 
 Result = TypeVar("Result")
 
@@ -34,86 +30,69 @@ Result = TypeVar("Result")
 class ProcessExecutor(ThreadPoolExecutor):
     """Runs functions of modules in processes, one for each thread of the pool.
 
-    A call whose process dies is repeated by a new process.
-
     Parameters
     ----------
     count : int
     """
 
     def __init__(self, count: int) -> None:
-        super().__init__(count)
-        self._process_of: dict[int, subprocess.Popen[bytes]] = {}
-        self._changing = Lock()
-        self._ended = False
+        super().__init__(count, initializer=self._start)
+        self._own = local()
+        self._processes: list[subprocess.Popen[bytes]] = []
 
     def submit(
         self, function: Callable[..., Result], /, *arguments: Any, **named: Any
     ) -> Future[Result]:
         """The result of a call in a process.
 
-        A :class:`LinkworkError` of the function becomes an :class:`InputError`, and so do
-        repeated deaths of processes.
+        A :class:`LinkworkError` of the function becomes an :class:`InputError`, and so does the
+        death of a process.
         """
-        call = (function, arguments, named)
-        future: Future[Result] = super().submit(self._result, call)
+        future: Future[Result] = super().submit(self._result, (function, arguments, named))
         return future
 
     def shutdown(self, wait: bool = True, *, cancel_futures: bool = True) -> None:
         """End the processes; calls that are running fail."""
-        with self._changing:
-            self._ended = True
-        for process in self._process_of.values():
-            _end(process)
+        for process in self._processes:
+            process.kill()
         super().shutdown(wait, cancel_futures=cancel_futures)
+        for process in self._processes:  # those that were just starting too
+            process.kill()
+            with suppress(OSError), process:  # closing its input fails if that has unread data
+                pass
+
+    def _start(self) -> None:
+        """The process of a thread."""
+        self._own.process = subprocess.Popen(
+            [sys.executable, "-P", "-m", __name__],
+            stdin=subprocess.PIPE,
+            stdout=subprocess.PIPE,
+            # one core for each process
+            env={
+                "OMP_NUM_THREADS": "1",
+                "OPENBLAS_NUM_THREADS": "1",
+                **os.environ,
+                "PYTHONPATH": os.pathsep.join(filter(None, sys.path)),
+            },
+            # new session: Ctrl-C reaches only the main process, which ends the others
+            start_new_session=True,
+        )
+        self._processes.append(self._own.process)
 
     def _result(self, call: object) -> Any:
-        for _ in range(_MOST_DEATHS):
-            process = self._process()
-            try:
-                assert process.stdin is not None
-                assert process.stdout is not None
-                pickle.dump(call, process.stdin, pickle.HIGHEST_PROTOCOL)
-                process.stdin.flush()
-                result = pickle.load(process.stdout)
-            except (EOFError, OSError, ValueError, pickle.UnpicklingError):
-                _end(process)  # after an incomplete answer the pipe cannot be used
-                continue
-            if isinstance(result, LinkworkError):
-                raise result
-            return result
-        raise InputError(
-            f"worker processes ended {_MOST_DEATHS} times on the same designs, perhaps for lack "
-            "of memory: reduce chunk or --workers"
-        )
-
-    def _process(self) -> subprocess.Popen[bytes]:
-        """The process of this thread; a new one in place of a dead one."""
-        with self._changing:
-            if self._ended:
-                raise CancelledError
-            process = self._process_of.get(get_ident())
-            if process is None or process.poll() is not None:
-                process = self._process_of[get_ident()] = subprocess.Popen(
-                    [sys.executable, "-P", "-m", __name__],
-                    stdin=subprocess.PIPE,
-                    stdout=subprocess.PIPE,
-                    # one core for each process
-                    env={
-                        "OMP_NUM_THREADS": "1",
-                        "OPENBLAS_NUM_THREADS": "1",
-                        **os.environ,
-                        "PYTHONPATH": os.pathsep.join(filter(None, sys.path)),
-                    },
-                    # new session: Ctrl-C reaches only the main process, which ends the others
-                    start_new_session=True,
-                )
-            return process
-
-
-def _end(process: subprocess.Popen[bytes]) -> None:
-    with suppress(OSError), process:  # closing its input fails if that has unread data
-        process.kill()
+        process = self._own.process
+        try:
+            pickle.dump(call, process.stdin, pickle.HIGHEST_PROTOCOL)
+            process.stdin.flush()
+            result = pickle.load(process.stdout)
+        except (EOFError, OSError, ValueError, pickle.UnpicklingError):
+            raise InputError(
+                "a worker process has ended, perhaps for lack of memory: reduce chunk or "
+                "--workers; the same command goes on from the chunks that are stored"
+            ) from None
+        if isinstance(result, LinkworkError):
+            raise result
+        return result
 
 
 def serve() -> None:

@@ -192,7 +192,16 @@ def run_study(
     if workers is None:
         workers = 1 if study.job.device == "gpu" else cores()
     with open_store(study, as_path(store), force=force) as target:
-        tell = _teller(study, target.done, progress)
+        began = monotonic()
+        # designs of an earlier run do not count in the rate
+        before = study.count_in(target.done)
+
+        def tell() -> None:
+            if progress is not None:
+                count, done = study.plan.count, study.count_in(target.done)
+                seconds = monotonic() - began
+                progress(Progress(total=count, done=done, before=before, seconds=seconds))
+
         tell()
         left = [k for k in range(study.chunks) if k not in target.done]
         if left:
@@ -202,28 +211,4 @@ def run_study(
                 for k, part in parts:
                     target.write(k, part)
                     tell()
-        repaired: tuple[int | str, ...] = (*target.repaired, *target.damaged)
-    return replace(summary_of(store), repaired=repaired)
-
-
-def _teller(
-    study: Study, done: set[int], progress: Callable[[Progress], None] | None
-) -> Callable[[], None]:
-    """A function that reports the chunks in ``done`` to ``progress``."""
-    began = monotonic()
-
-    # designs of an earlier run do not count in the rate
-    before = study.count_in(done)
-
-    def tell() -> None:
-        if progress is not None:
-            progress(
-                Progress(
-                    total=study.plan.count,
-                    done=study.count_in(done),
-                    before=before,
-                    seconds=monotonic() - began,
-                )
-            )
-
-    return tell
+    return replace(summary_of(store), repaired=target.damaged)

@@ -1,25 +1,21 @@
 """The store of a study: a Zarr group that is written chunk by chunk and can be resumed.
 
 A chunk is finished when the array ``ledger/chunks`` has its record, which is written last. zarr
-writes every file completely or not at all, and ends it with a checksum (codec ``crc32c``).
-
-Zarr has no checksums of the files that describe arrays. ``ledger/store`` has them, and its content
-describes the store while such a file is damaged.
+writes every file completely or not at all, and ends the files of chunks with a checksum (codec
+``crc32c``).
 """
 
 from __future__ import annotations
 
 import json
 import os
-import re
 import shutil
 import sys
 import warnings
-import zlib
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 from dataclasses import asdict, dataclass
-from itertools import islice, zip_longest
+from itertools import zip_longest
 from pathlib import Path
 from typing import Any
 
@@ -34,18 +30,16 @@ if sys.platform == "win32":
 else:
     import fcntl
 
-#: The group of what Linkwork notes about the chunks and the store.
+#: The group of what Linkwork notes about the chunks.
 LEDGER = "ledger"
 #: The file that describes the whole store, or one array in its folder.
 METADATA = "zarr.json"
 
 _RECORDS = f"{LEDGER}/chunks"  # an array of texts, one for each chunk
-_STORE = f"{LEDGER}/store"
 _LOCK = f"{LEDGER}/lock"
 _IDENTITY = "linkwork_identity"
 _PARTIAL = ".partial"  # zarr's suffix of incomplete files
 _LONGEST_SHOWN = 60  # maximum length of a value in a message
-_DEEPEST = 2  # keys of a difference between studies, as dimensions."O2 A"
 
 
 # ----------------------------------------------------------------------
@@ -53,20 +47,12 @@ _DEEPEST = 2  # keys of a difference between studies, as dimensions."O2 A"
 
 
 class Store:
-    """The store of one study, open for writing; see :func:`open_store`.
+    """The store of one study, open for writing; see :func:`open_store`."""
 
-    Parameters
-    ----------
-    path : Path
-    study : Study
-    repaired : tuple of str
-        Metadata that was damaged and has been written again.
-    """
-
-    def __init__(self, path: Path, study: Study, repaired: tuple[str, ...]) -> None:
+    def __init__(self, path: Path, study: Study) -> None:
         import zarr
 
-        self.path, self.study, self.repaired = path, study, repaired
+        self.path, self.study = path, study
         changed = {chunk.number: bool(chunk.changed) for chunk in read_chunks(path)}
         #: Finished chunks as they were written.
         self.done = {k for k in changed if not changed[k]}
@@ -110,31 +96,38 @@ def open_store(study: Study, path: Path, *, force: bool = False) -> Iterator[Sto
     InputError
         If the path contains another study or other files, or another run is writing to it.
     """
-    files = _files_before_chunks(study)
     if force and _exists(path):
-        check_is_store(path)  # delete nothing but the store of a study
         _take_away(path)
     if not _exists(path):
-        _make(path, files)
-    check_is_store(path)  # only stores have a lock
+        _make(path, study)
+    attributes = attributes_of(path)  # only stores have a lock
     with _lock_store(path):
-        _check_same(study, path)
-        of_study = _names_of_files(path)
+        _check_same(path, attributes[_IDENTITY], study.identity)
         for incomplete in path.rglob(f"*{_PARTIAL}"):
-            if of_study.fullmatch(incomplete.relative_to(path).as_posix()):
-                incomplete.unlink()
-        repaired = damaged_metadata(path)
-        if repaired:
-            # a title or a comment may have changed, so all of it belongs together
-            _write_files(path, files)
-        yield Store(path, study, repaired)
+            incomplete.unlink()
+        yield Store(path, study)
 
 
-def _files_before_chunks(study: Study) -> dict[str, bytes]:
-    """Path and content of the files of a store without chunks."""
+def _make(path: Path, study: Study) -> None:
+    """Create a store without chunks, in one step."""
+    if not path.parent.is_dir():
+        raise InputError(f'cannot write "{path}": there is no folder "{path.parent}"')
+    # on the same file system, so that renaming is atomic
+    part = path.with_name(f".{path.name}.{os.getpid()}{_PARTIAL}")
+    shutil.rmtree(part, ignore_errors=True)
+    try:
+        _write_without_chunks(part, study)
+        os.rename(part, path)
+    except OSError as error:
+        raise unwritten(path, error) from None
+    finally:
+        shutil.rmtree(part, ignore_errors=True)
+
+
+def _write_without_chunks(folder: Path, study: Study) -> None:
+    """The description of a store and of its arrays, and the inputs of all designs."""
     import zarr
     from zarr.codecs import Crc32cCodec, ZstdCodec
-    from zarr.storage import MemoryStore
 
     lead = study.inputs[0]
     others = [name for name in study.inputs[1:] if " " not in name]
@@ -150,9 +143,7 @@ def _files_before_chunks(study: Study) -> dict[str, bytes]:
     }
     sizes = {DESIGN: study.plan.count, lead: len(study.model.rows_in_file_units)}
     chunks = {**sizes, DESIGN: study.chunk_size}
-    buffers: dict[str, Any] = {}
-    store = MemoryStore(buffers)
-    group = zarr.open_group(store, mode="w", zarr_format=3, attributes=attributes)
+    group = zarr.open_group(str(folder), mode="w", zarr_format=3, attributes=attributes)
     for variable in study.variables:
         array = group.create_array(
             variable.name,
@@ -161,7 +152,7 @@ def _files_before_chunks(study: Study) -> dict[str, bytes]:
             dtype=variable.dtype,
             fill_value=variable.fill,
             dimension_names=variable.axes,
-            attributes=dict(variable.attributes),
+            attributes=variable.attributes,
             compressors=[ZstdCodec(level=3), Crc32cCodec()],
         )
         if variable.values is not None:
@@ -177,58 +168,13 @@ def _files_before_chunks(study: Study) -> dict[str, bytes]:
     with warnings.catch_warnings():
         # used by xarray; other readers read the metadata of each array
         warnings.filterwarnings("ignore", message="Consolidated metadata")
-        zarr.consolidate_metadata(store)
-    files = {path: buffer.to_bytes() for path, buffer in buffers.items()}
-    content = {
-        "group": json.loads(files[METADATA]),
-        "checksums": {path: zlib.crc32(data) for path, data in files.items()},
-    }
-    text = json.dumps(content, ensure_ascii=False).encode()
-    return {**files, _STORE: _checksum(text) + b"\n" + text}
-
-
-def _make(path: Path, files: Mapping[str, bytes]) -> None:
-    """Create a store without chunks, in one step."""
-    if not path.parent.is_dir():
-        raise InputError(f'cannot write "{path}": there is no folder "{path.parent}"')
-    # on the same file system, so that renaming is atomic
-    part = path.with_name(f".{path.name}.{os.getpid()}{_PARTIAL}")
-    shutil.rmtree(part, ignore_errors=True)
-    try:
-        _write_files(part, {**files, _LOCK: b""})
-        os.rename(part, path)
-    except OSError as error:
-        raise unwritten(path, error) from None
-    finally:
-        shutil.rmtree(part, ignore_errors=True)
-
-
-def _write_files(folder: Path, files: Mapping[str, bytes]) -> None:
-    """Write files, each completely or not at all."""
-    for name, data in files.items():
-        path = folder / name
-        part = path.with_name(path.name + _PARTIAL)
-        try:
-            path.parent.mkdir(parents=True, exist_ok=True)
-            part.write_bytes(data)
-            os.replace(part, path)
-        except OSError as error:
-            raise unwritten(path, error) from None
+        zarr.consolidate_metadata(group.store)
+    (folder / _LOCK).touch()
 
 
 def _take_away(path: Path) -> None:
-    """Delete a store in one step: remaining parts would be resumed.
-
-    Raises
-    ------
-    InputError
-        If it contains files that no study has written.
-    """
-    if foreign := _foreign_files(path):
-        raise InputError(
-            f'"{path}" also contains files that are no part of a study, as "{foreign[0]}": '
-            "move them elsewhere, or choose another store"
-        )
+    """Delete the store of a study in one step: remaining parts would be resumed."""
+    attributes_of(path)  # deletes nothing else
     aside = path.with_name(f".{path.name}.{os.getpid()}.old{_PARTIAL}")
     with _lock_store(path):
         # renamed before deletion: an interruption leaves no incomplete store of this name
@@ -236,37 +182,15 @@ def _take_away(path: Path) -> None:
     shutil.rmtree(aside)
 
 
-def _foreign_files(path: Path) -> list[str]:
-    """Files in a store that are neither metadata, nor chunks of arrays, nor of the ledger."""
-    of_study = _names_of_files(path)
-    files = (each.relative_to(path) for each in sorted(path.rglob("*")) if each.is_file())
-    return [str(file) for file in files if not of_study.fullmatch(file.as_posix())]
-
-
-def _names_of_files(path: Path) -> re.Pattern[str]:
-    """The names of all files that a study may have written, incomplete ones too."""
-    arrays = [re.escape(found.parent.name) for found in path.glob(f"*/{METADATA}")]
-    folder = f"({'|'.join([*arrays, _RECORDS])})/"
-    chunk = r"c(/\d+)+(\.[0-9a-f]{32})?"
-    return re.compile(
-        f"(({folder})?{METADATA}|{folder}{chunk}|{_STORE})({_PARTIAL})?|{_LOCK}", re.DOTALL
-    )
-
-
 @contextmanager
 def _lock_store(path: Path) -> Iterator[None]:
     """Lock the store against other writers; the lock of a killed process disappears."""
-    lock = path / _LOCK
-    lock.parent.mkdir(exist_ok=True)
-    with lock.open("ab") as file:
+    with (path / _LOCK).open("ab") as file:
         try:
             if sys.platform == "win32":
                 msvcrt.locking(file.fileno(), msvcrt.LK_NBLCK, 1)
             else:
                 fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
-            # a store deleted between opening and locking counts as locked
-            if not os.path.samestat(os.fstat(file.fileno()), lock.stat()):
-                raise FileNotFoundError(lock)
         except OSError:
             raise InputError(
                 f'another run is writing to "{path}": wait for it or stop it'
@@ -305,12 +229,10 @@ class StoredChunk:
 
 
 def open_arrays(path: Path) -> Any:
-    """The arrays of a store for reading, as a zarr group; damaged metadata is not read."""
+    """The arrays of a store for reading, as a zarr group."""
     import zarr
-    from zarr.storage import LocalStore, StorePath
 
-    store = LocalStore(path, read_only=True)
-    return zarr.Group(zarr.AsyncGroup.from_dict(StorePath(store), _description(path)))
+    return zarr.open_group(str(path), mode="r")
 
 
 def read_chunks(path: Path) -> Iterator[StoredChunk]:
@@ -362,92 +284,17 @@ def attributes_of(path: Path) -> Mapping[str, Any]:
     Raises
     ------
     InputError
-        If it is not the store of a study, or its metadata is damaged.
-    """
-    check_is_store(path)
-    if damaged_metadata(path):
-        raise InputError(
-            f'the metadata of "{path}" is damaged, or of an earlier version: repeat the command '
-            "of its study, which repairs the store"
-        )
-    return _attributes(_description(path))
-
-
-def damaged_metadata(path: Path) -> tuple[str, ...]:
-    """The files that describe a store and have changed since they were written."""
-    known = _read_store_file(path)
-    if known is None:
-        return (_STORE,)
-    return tuple(file for file, sum_ in known["checksums"].items() if _sum(path / file) != sum_)
-
-
-def _description(path: Path) -> dict[str, Any]:
-    """The content of the file that describes the whole store, also while it is damaged.
-
-    Raises
-    ------
-    InputError
-        If its copy is damaged too.
-    """
-    known = _read_store_file(path)
-    found = _read_group(path) if known is None else known["group"]
-    if found is None:
-        raise InputError(
-            f'"{path}" is damaged beyond knowing its study: start over with --force, '
-            "which deletes it, or choose another store"
-        )
-    return found
-
-
-def _attributes(description: Mapping[str, Any]) -> dict[str, Any]:
-    found = description["attributes"]
-    return {**found, _IDENTITY: json.loads(found[_IDENTITY])}
-
-
-def _read_store_file(path: Path) -> dict[str, Any] | None:
-    """The copy of the description, and checksums; ``None`` if the file is missing or damaged."""
-    try:
-        checksum, text = (path / _STORE).read_bytes().split(b"\n", 1)
-        known: dict[str, Any] | None = json.loads(text) if checksum == _checksum(text) else None
-    except (OSError, ValueError):
-        return None
-    return known
-
-
-def _read_group(path: Path) -> dict[str, Any] | None:
-    """The description of a study's store; ``None`` if it is missing or damaged."""
-    try:
-        found: dict[str, Any] = json.loads((path / METADATA).read_text(encoding="utf-8"))
-        _attributes(found)
-    except (OSError, ValueError, KeyError, TypeError, RecursionError):
-        return None
-    return found
-
-
-def _checksum(text: bytes) -> bytes:
-    return b"%08x" % zlib.crc32(text)
-
-
-def _sum(file: Path) -> int | None:
-    try:
-        return zlib.crc32(file.read_bytes())
-    except OSError:
-        return None
-
-
-def check_is_store(path: Path) -> None:
-    """Check that a folder is the store of a study, damaged or not.
-
-    Raises
-    ------
-    InputError
-        If it is not there, or something else.
+        If it is not there, or not the store of a study.
     """
     if not _exists(path):
         raise InputError(f'there is no "{path}"')
-    known = (path / _LOCK).exists() or _read_store_file(path) is not None
-    if not known and _read_group(path) is None:
-        raise InputError(f'"{path}" exists and is not the store of a study: choose another name')
+    try:
+        described = json.loads((path / METADATA).read_text(encoding="utf-8"))["attributes"]
+        return {**described, _IDENTITY: json.loads(described[_IDENTITY])}
+    except (OSError, ValueError, KeyError, TypeError):
+        raise InputError(
+            f'"{path}" exists and is not the store of a study: choose another name'
+        ) from None
 
 
 def _exists(path: Path) -> bool:
@@ -461,39 +308,45 @@ def _exists(path: Path) -> bool:
 # Whether a store holds the same study.
 
 
-def _check_same(study: Study, path: Path) -> None:
+def _check_same(path: Path, there: Mapping[str, Any], here: Mapping[str, Any]) -> None:
     """Reject the store of another study."""
-    there = _attributes(_description(path))[_IDENTITY]
-    if lines := "\n".join(_differences(there, study.identity)):
+    old, new = _entries(there), _entries(here)
+    lines = [
+        _difference(key, old.get(key), new.get(key))
+        for key in {**old, **new}
+        if old.get(key) != new.get(key)
+    ]
+    if lines:
         raise InputError(
-            f'"{path}" holds another study:\n{lines}\n'
-            "Choose another store, or start over with --force, "
-            "which deletes the old study."
+            "\n".join([f'"{path}" holds another study:', *lines])
+            + "\nChoose another store, or start over with --force, which deletes the old study."
         )
 
 
-def _differences(there: Any, here: Any, *key: str) -> Iterator[str]:
-    """The differences between two studies, one line each."""
-    if isinstance(there, dict) and isinstance(here, dict) and len(key) < _DEEPEST:
-        for name in {**here, **there}:
-            yield from _differences(there.get(name), here.get(name), *key, name)
-    elif isinstance(there, str) and isinstance(here, str):
-        # the first lines that differ
-        lines = zip_longest(there.split("\n"), here.split("\n"), fillvalue="")
-        for old, new in islice((pair for pair in lines if pair[0] != pair[1]), 1):
-            yield _difference(old.strip(), new.strip(), key)
-    elif there != here:
-        yield _difference(there, here, key)
+def _entries(identity: Mapping[str, Any]) -> dict[tuple[str, ...], Any]:
+    """What identifies a study, by key path."""
+    found: dict[tuple[str, ...], Any] = {}
+    for name, value in identity.items():
+        if isinstance(value, dict):
+            found |= {(name, key): entry for key, entry in value.items()}
+        else:
+            # blank lines at the end of a mechanism may differ
+            found[(name,)] = value.rstrip() if isinstance(value, str) else value
+    return found
 
 
-def _difference(there: Any, here: Any, key: tuple[str, ...]) -> str:
-    return f"  {key_text(key)}: {_shown(there)} there, {_shown(here)} here"
+def _difference(key: tuple[str, ...], old: Any, new: Any) -> str:
+    """A line about two values; of two texts about the first lines that differ."""
+    if isinstance(old, str) and isinstance(new, str):
+        lines = zip_longest(old.split("\n"), new.split("\n"), fillvalue="")
+        old, new = next(pair for pair in lines if pair[0] != pair[1])
+    return f"  {key_text(key)}: {_shown(old)} there, {_shown(new)} here"
 
 
 def _shown(value: Any) -> str:
     if value is None or value == "":
         return "nothing"
-    text = value if isinstance(value, str) else json.dumps(value, ensure_ascii=False)
+    text = value.strip() if isinstance(value, str) else json.dumps(value, ensure_ascii=False)
     return text if len(text) <= _LONGEST_SHOWN else text[:_LONGEST_SHOWN] + "…"
 
 
@@ -503,26 +356,23 @@ def _shown(value: Any) -> str:
 
 @dataclass(frozen=True, kw_only=True)
 class Verification:
-    """The files of a store compared with their checksums.
+    """The chunks of a store compared with their checksums.
 
     Parameters
     ----------
     sound : int
         Chunks that are as they were written.
-    metadata : tuple of str
-        Changed files that describe the store.
     chunks : Mapping[int, tuple of str]
         Changed files of damaged chunks.
     """
 
     sound: int
-    metadata: tuple[str, ...]
     chunks: Mapping[int, tuple[str, ...]]
 
     @property
     def intact(self) -> bool:
         """Whether nothing has changed."""
-        return not self.metadata and not self.chunks
+        return not self.chunks
 
     def to_dict(self) -> dict[str, Any]:
         """The result in JSON types."""
@@ -530,7 +380,7 @@ class Verification:
 
 
 def verify_store(store: Path | str) -> Verification:
-    """Compare all files of a study's store with their checksums; nothing is changed.
+    """Compare the chunks of a study's store with their checksums; nothing is changed.
 
     Raises
     ------
@@ -538,9 +388,7 @@ def verify_store(store: Path | str) -> Verification:
         If it is not the store of a study.
     """
     path = as_path(store)
-    check_is_store(path)
+    attributes_of(path)
     files = {chunk.number: chunk.changed for chunk in read_chunks(path)}
     changed = {number: names for number, names in files.items() if names}
-    return Verification(
-        sound=len(files) - len(changed), metadata=damaged_metadata(path), chunks=changed
-    )
+    return Verification(sound=len(files) - len(changed), chunks=changed)

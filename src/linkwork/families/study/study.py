@@ -201,36 +201,6 @@ _DOES = {
 }
 
 
-@dataclass(frozen=True)
-class Choice:
-    """Equally likely values."""
-
-    values: tuple[float, ...]
-
-    def __call__(self, generator: np.random.Generator, count: int) -> Array:
-        drawn: Array = np.array(self.values)[generator.integers(len(self.values), size=count)]
-        return drawn
-
-
-@dataclass(frozen=True)
-class Triangular:
-    """A triangular distribution from ``low`` to ``high`` with its peak at ``likeliest``."""
-
-    low: float
-    likeliest: float
-    high: float
-
-    def __post_init__(self) -> None:
-        if not self.low <= self.likeliest <= self.high or self.low == self.high:
-            raise InputError(
-                "a triangle needs from <= likeliest <= to and from < to, "
-                f"got {self.low:g}, {self.likeliest:g}, {self.high:g}"
-            )
-
-    def __call__(self, generator: np.random.Generator, count: int) -> Array:
-        return generator.triangular(self.low, self.likeliest, self.high, count)
-
-
 def choose_values(
     content: Mapping[str, Any], folder: Path, problems: Problems
 ) -> tuple[Plan, Mapping[str, float]] | None:
@@ -257,7 +227,7 @@ def choose_values(
     varied = {name: entry for name, entry in given.items() if name not in constants}
     read = {
         "grid": _levels,
-        "random": _distribution,
+        "random": read_distribution,
         "latin-hypercube": _range,
         "table": _nothing,
     }[sampling]
@@ -354,13 +324,21 @@ def _levels(entry: Any) -> Array | None:
     return np.linspace(low, high, entry["levels"])
 
 
-def _distribution(entry: Any) -> Distribution | None:
+def read_distribution(entry: Any) -> Distribution | None:
+    """What an entry of random designs is drawn from; ``None`` if it is none of these."""
     if isinstance(entry, list):
-        return Choice(tuple(map(float, entry)))
+        values = np.array(entry, dtype=float)
+        return lambda generator, count: values[generator.integers(len(values), size=count)]
     if set(entry) == _RANGE:
         return Uniform(*_ends(entry))
     if set(entry) == _TRIANGLE:
-        return Triangular(float(entry["from"]), float(entry["likeliest"]), float(entry["to"]))
+        low, peak, high = (float(entry[key]) for key in ("from", "likeliest", "to"))
+        if not low <= peak <= high or low == high:
+            raise InputError(
+                "a triangle needs from <= likeliest <= to and from < to, "
+                f"got {low:g}, {peak:g}, {high:g}"
+            )
+        return lambda generator, count: generator.triangular(low, peak, high, count)
     if set(entry) == _NORMAL:
         return Normal(float(entry["mean"]), float(entry["deviation"]))
     return None
@@ -524,7 +502,7 @@ _CHUNK_BYTES = 64 << 20  # target size of the arrays of one chunk
 _CHUNKS_WANTED = 16  # chunks of a small study, for several workers
 
 
-@dataclass(frozen=True, kw_only=True)
+@dataclass(frozen=True)
 class Variable:
     """An array of the store: over designs, over designs and inputs, or over inputs alone.
 
@@ -533,9 +511,9 @@ class Variable:
 
     name: str
     axes: tuple[str, ...]
-    dtype: str
-    fill: Any
     attributes: Mapping[str, Any]
+    dtype: str = "float64"
+    fill: Any = np.nan
     values: Array | None = None
 
 
@@ -618,75 +596,44 @@ class Study:
     @cached_property
     def variables(self) -> tuple[Variable, ...]:
         """Every array of the store."""
-        of_input = [
-            self._variable(
-                name, (self.inputs[0],), "float64", np.nan, self.model.input_units[name], values
-            )
-            for name, values in zip(self.inputs, self.model.rows_in_file_units.T, strict=True)
-        ]
-        varied = [
-            self._variable(name, (DESIGN,), "float64", np.nan, self._unit_of_number(name))
-            for name in self.plan
-        ]
-        return (*of_input, *varied, *self._of_design(), *self._of_rows())
-
-    def _of_design(self) -> list[Variable]:
-        """One number for each design."""
-        one = (DESIGN,)
-        found = [
-            self._variable("built", one, "bool", False, about="whether the design can be built"),
-            self._variable("found", one, "int32", -1, about="rows with a position"),
-            self._variable("certified", one, "int32", -1, about="rows that are proved"),
-            self._variable("passed", one, "bool", False, about="built, and passed every filter"),
-        ]
+        one, lead = (DESIGN,), self.inputs[:1]
+        inputs = zip(self.inputs, self.model.rows_in_file_units.T, strict=True)
+        units = self.model.input_units
+        found = [Variable(x, lead, _about(units[x]), values=values) for x, values in inputs]
+        found += [Variable(name, one, _about(self._unit_of_number(name))) for name in self.plan]
+        truths = {
+            "built": "whether the design can be built",
+            "passed": "built, and passed every filter",
+            **{passes_name(name): str(x) for name, x in self.job.filters.items()},
+        }
+        counts = {"found": "rows with a position", "certified": "rows that are proved"}
+        found += [Variable(name, one, _about("", x), "bool", False) for name, x in truths.items()]
+        found += [Variable(name, one, _about("", x), "int32", -1) for name, x in counts.items()]
         found += [
-            self._variable(passes_name(name), one, "bool", False, about=str(condition))
-            for name, condition in self.job.filters.items()
-        ]
-        return found + [
-            self._variable(name, one, "float64", np.nan, self.units[name], about=str(reduced))
+            Variable(name, one, _about(self.units[name], str(reduced)))
             for name, reduced in self.job.reductions.items()
         ]
-
-    def _of_rows(self) -> list[Variable]:
-        """One number for each design and input."""
         if not self.job.keep:
-            return []
-        axes = (DESIGN, self.inputs[0])
+            return tuple(found)
+        axes = (DESIGN, *lead)
         note = "missing where there is no position or the design did not pass"
-        found = [
-            self._variable(name, axes, "float64", np.nan, self.units[name], about=note)
-            for name in self.job.keep
-        ]
-        flags = {
+        found += [Variable(name, axes, _about(self.units[name], note)) for name in self.job.keep]
+        codes = {
             "flag_values": [status.code for status in Status],
             "flag_meanings": " ".join(status.name for status in Status),
         }
-        return [
-            *found,
-            Variable(name="status", axes=axes, dtype="int8", fill=-1, attributes=flags),
-        ]
-
-    def _variable(
-        self,
-        name: str,
-        axes: tuple[str, ...],
-        dtype: str,
-        fill: Any,
-        unit: str = "",
-        values: Array | None = None,
-        about: str = "",
-    ) -> Variable:
-        attributes = ({"units": unit} if unit else {}) | ({"description": about} if about else {})
-        return Variable(
-            name=name, axes=axes, dtype=dtype, fill=fill, attributes=attributes, values=values
-        )
+        return (*found, Variable("status", axes, codes, "int8", -1))
 
     def _unit_of_number(self, name: str) -> str:
         table = number_named(self.job.description, name).table
         if table in ("lengths", "points", "sliders"):
             return self.job.description.length
         return self.job.description.angle.value if table == "angles" else ""
+
+
+def _about(unit: str, description: str = "") -> dict[str, str]:
+    """The attributes of an array."""
+    return ({"units": unit} if unit else {}) | ({"description": description} if description else {})
 
 
 def usual_chunk(count: int, rows: int, columns: int) -> int:

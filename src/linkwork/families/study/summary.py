@@ -69,8 +69,8 @@ class Summary:
     outputs : tuple of OutputSummary
     damaged : tuple of int
         Chunks whose files have changed since they were stored; they count as not computed.
-    repaired : tuple of int or str
-        Damaged chunks that the run has computed again, and metadata that it has written again.
+    repaired : tuple of int
+        Damaged chunks that the run has computed again.
     """
 
     name: str
@@ -86,7 +86,7 @@ class Summary:
     problems: Mapping[str, int]
     outputs: tuple[OutputSummary, ...]
     damaged: tuple[int, ...] = ()
-    repaired: tuple[int | str, ...] = ()
+    repaired: tuple[int, ...] = ()
 
     def to_dict(self) -> dict[str, Any]:
         """The summary in JSON types."""
