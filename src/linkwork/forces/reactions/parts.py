@@ -28,6 +28,10 @@ from linkwork.forces.reactions.geometry import Geometry
 # Reactions of parts, by their kinds.
 
 
+#: Unknowns with their factors.
+Terms = tuple[tuple[int, Array | float], ...]
+
+
 @singledispatch
 def join_part(part: Part, bodies: FreeBodies) -> None:
     """Add the reactions of one part, or its loads."""
@@ -35,9 +39,14 @@ def join_part(part: Part, bodies: FreeBodies) -> None:
 
 
 @singledispatch
-def push_along(part: Part, bodies: FreeBodies) -> int:
-    """Add the force along the displacement of a part; the number of the unknown."""
+def acts_along(part: Part, bodies: FreeBodies) -> tuple[Act, ...]:
+    """A unit force along the displacement of a part, and its reaction."""
     raise NotImplementedError(type(part).__name__)
+
+
+@singledispatch
+def read_along(part: Part, bodies: FreeBodies, terms: Terms) -> None:
+    """Name the forces that a force along the displacement exerts beside it: in most parts none."""
 
 
 def join_parts(bodies: FreeBodies) -> None:
@@ -57,10 +66,17 @@ def join_loads(bodies: FreeBodies) -> None:
 
 def drive_part(bodies: FreeBodies, name: str) -> int:
     """Add the force along the displacement of the part with this name."""
+    part = part_named(bodies, name)
+    force = bodies.unknown(*acts_along(part, bodies))
+    read_along(part, bodies, ((force, 1.0),))
+    return force
+
+
+def part_named(bodies: FreeBodies, name: str) -> Part:
+    """The part with a displacement of this name."""
     part = next(part for part in bodies.parts if part.drive and part.label == name)
     open_room(type(part), "forces")
-    found: int = push_along(part, bodies)
-    return found
+    return part
 
 
 # ----------------------------------------------------------------------
@@ -111,11 +127,12 @@ def line_of(line: tuple[str, str], geometry: Geometry) -> ComplexArray:
     return unit
 
 
-def along_line(bodies: FreeBodies, point: str, on: str, line: tuple[str, str]) -> int:
-    """A force on a point along a line of another body."""
+def along_line(
+    bodies: FreeBodies, holder: Holder, point: str, on: str, line: tuple[str, str]
+) -> tuple[Act, Act]:
+    """A unit force on a body at a point along a line of another one, and its reaction."""
     geometry = bodies.geometry
-    way, place = line_of(line, geometry), geometry.place(point).v
-    return bodies.pair(bodies.at(point), bodies.link(on), place, way)
+    return _pair(holder, bodies.link(on), geometry.place(point).v, line_of(line, geometry))
 
 
 def across_line(bodies: FreeBodies, point: str, on: str, line: tuple[str, str]) -> int:
@@ -245,22 +262,22 @@ def _strand(belt: Belt, bodies: FreeBodies, side: float) -> tuple[ComplexArray, 
 def join_cylinder(cylinder: Cylinder, bodies: FreeBodies) -> None:
     """A cylinder that is not driven transmits no force."""
     driven = {which.drives for which in bodies.linkage.inputs}
-    if ("cylinder", cylinder.name) not in driven:
-        _read_ends(cylinder, bodies, None)
+    coupled = {name for part in bodies.parts for name in part.pushes}
+    if ("cylinder", cylinder.name) not in driven and cylinder.name not in coupled:
+        read_cylinder(cylinder, bodies, ())
 
 
-@push_along.register
-def drive_cylinder(cylinder: Cylinder, bodies: FreeBodies) -> int:
+@acts_along.register
+def along_cylinder(cylinder: Cylinder, bodies: FreeBodies) -> tuple[Act, ...]:
     """The force that pushes its ends apart."""
     first, second = (bodies.geometry.place(point).v for point in cylinder.between)
     along = (second - first) / np.abs(second - first)
     start, end = map(bodies.at, cylinder.between)
-    force = bodies.unknown(Act(end, second, along), Act(start, first, -along))
-    _read_ends(cylinder, bodies, force)
-    return force
+    return Act(end, second, along), Act(start, first, -along)
 
 
-def _read_ends(cylinder: Cylinder, bodies: FreeBodies, force: int | None) -> None:
+@read_along.register
+def read_cylinder(cylinder: Cylinder, bodies: FreeBodies, terms: Terms) -> None:
     """The forces of the pins on the cylinder."""
     first, second = (bodies.geometry.place(point).v for point in cylinder.between)
     along = (second - first) / np.abs(second - first)
@@ -278,7 +295,7 @@ def _read_ends(cylinder: Cylinder, bodies: FreeBodies, force: int | None) -> Non
                     name=f"{stem}.{axis}",
                     kind=Kind.FORCE,
                     about=about,
-                    terms=() if force is None else ((force, sign * part),),
+                    terms=tuple((unknown, sign * part * factor) for unknown, factor in terms),
                 )
             )
 
@@ -385,11 +402,12 @@ def _contact(
     return middle + side * large * out, -out, 1j * out
 
 
-@push_along.register
-def drive_rolling(rolling: Rolling, bodies: FreeBodies) -> int:
+@acts_along.register
+def along_rolling(rolling: Rolling, bodies: FreeBodies) -> tuple[Act, ...]:
     """The force on the wheel's centre along the line."""
     assert rolling.line is not None
-    return along_line(bodies, rolling.center, rolling.on, rolling.line)
+    center = rolling.center
+    return along_line(bodies, bodies.at(center), center, rolling.on, rolling.line)
 
 
 # ----------------------------------------------------------------------
@@ -420,12 +438,10 @@ def join_slider(slider: Slider, bodies: FreeBodies) -> None:
     rub_on_line(slider.name, bodies, size, (link, on), slider.points[0], slider.line)
 
 
-@push_along.register
-def drive_slider(slider: Slider, bodies: FreeBodies) -> int:
+@acts_along.register
+def along_slider(slider: Slider, bodies: FreeBodies) -> tuple[Act, ...]:
     """The force along the line at the slider's first point."""
-    place = bodies.geometry.place(slider.points[0]).v
-    along = line_of(slider.line, bodies.geometry)
-    return bodies.pair(bodies.link(slider.link), bodies.link(slider.on), place, along)
+    return along_line(bodies, bodies.link(slider.link), slider.points[0], slider.on, slider.line)
 
 
 # ----------------------------------------------------------------------
@@ -446,10 +462,10 @@ def join_slot(slot: Slot, bodies: FreeBodies) -> None:
         rub_on_line(slot.name, bodies, size, pair, slot.point, slot.line)
 
 
-@push_along.register
-def drive_slot(slot: Slot, bodies: FreeBodies) -> int:
+@acts_along.register
+def along_slot(slot: Slot, bodies: FreeBodies) -> tuple[Act, ...]:
     """The force on the pin along the slot."""
-    return along_line(bodies, slot.point, slot.on, slot.line)
+    return along_line(bodies, bodies.at(slot.point), slot.point, slot.on, slot.line)
 
 
 # ----------------------------------------------------------------------
