@@ -1,4 +1,4 @@
-"""Parameters of which every run takes some, and the extended tests the others."""
+"""Parameters of which every run takes some, the extended tests some more, a thorough run all."""
 
 from __future__ import annotations
 
@@ -11,8 +11,9 @@ __all__ = ["thinned"]
 
 
 def thinned(values: Iterable[Any], every: int = 6) -> list[Any]:
-    """Every sixth value, or whichever, as it is; the others marked as extended."""
+    """Every sixth value, or whichever, as it is; as many extended ones; the others thorough."""
+    marks = {every // 2: pytest.mark.extended, 0: ()}
     return [
-        value if k % every == 0 else pytest.param(value, marks=pytest.mark.extended)
+        pytest.param(value, marks=marks.get(k % every, pytest.mark.thorough))
         for k, value in enumerate(values)
     ]

@@ -80,6 +80,11 @@ WINGS = (
         },
     ),
     Wing(
+        module="linkwork.couplings",
+        title="Linear couplings",
+        parts={"couplings": "linkwork.couplings.coupling:LinearCoupling"},
+    ),
+    Wing(
         module="linkwork.circuits",
         title="Assemblies",
         commands={

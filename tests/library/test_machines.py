@@ -425,3 +425,33 @@ def test_compressor_gives_the_power_of_its_motor_to_gas_friction_and_speed() -> 
     )
     assert friction[-1] > 0
     same(power + load - friction, rate, float(np.abs(rate).max()))
+
+
+# ------------------------------------------------------------------ linear couplings
+
+
+@law("hydraulic-clutch")
+def test_hydraulic_clutch_shares_the_oil_of_two_cylinders() -> None:
+    """Master and slave cylinder share their oil: 0.5957 times one stroke is the other."""
+    motion = motion_of("hydraulic-clutch")
+    pin = abs(18 + 60j) * np.exp(1j * degrees(motion, "pedal"))
+    master, start = np.abs(pin - (150 + 60j)), 132.0
+    slave = np.hypot(110, 15) - 0.5957 * (master - start)
+    same(motion["slave"], slave, 221)
+    # the law of cosines in the triangle of fork, slave cylinder and ground
+    q, r = 300, 190 + 45j
+    base = abs(r - q)
+    angle = np.arccos((60**2 + base**2 - slave**2) / (2 * 60 * base))
+    same(degrees(motion, "fork"), np.angle(r - q) - angle, 1)
+
+
+@law("hoist")
+def test_hoist_lifts_its_cage_by_the_radius_times_the_angle() -> None:
+    """The cage rises by radius times angle; the drum holds the difference of the weights."""
+    motion = motion_of("hoist")
+    height = 0.5 + 0.25 * degrees(motion, "drum")
+    same(motion["height"], height, 6)
+    same(motion["other"], 6 - height, 6)
+    forces = lw.example("hoist").forces(at=200).values
+    assert forces["drum.effort"] == pytest.approx(0.25 * 100 * 9.81, rel=1e-12)
+    assert forces["rope.force"] == pytest.approx(300 * 9.81, rel=1e-12)

@@ -252,17 +252,19 @@ function entry(form: Element, what: Field, file: FileState): () => Entry {
   const points = Object.keys(file.points);
   const links = file.links.map((link) => link.name);
   const sliders = file.drives.filter((drive) => drive.kind === "slider").map((drive) => drive.name);
-  const listed = { point: points, link: links, slider: sliders, choice: words }[kind];
+  const lengths = file.drives.filter(({ kind }) => kind === "slider" || kind === "cylinder").map(({ name }) => name);
+  const listed = { point: points, link: links, slider: sliders, length: lengths, choice: words }[kind];
   if (listed) {
     const select = html("select", {}, html("label", { title: doc }, form, label));
     for (const word of [...(required ? [] : [""]), ...listed]) html("option", { value: word }, select, word || "none");
     return () => select.value;
   }
-  if (kind === "points" || kind === "links") {
+  const several = { points, links, lengths }[kind];
+  if (several) {
     const box = html("fieldset", { class: "lw-points", title: doc }, form);
     html("legend", {}, box, label);
     const chosen: string[] = [];
-    for (const word of kind === "points" ? points : links) {
+    for (const word of several) {
       const toggle = html("label", { class: "lw-toggle" }, box);
       const check = html("input", { type: "checkbox" }, toggle);
       toggle.append(word);

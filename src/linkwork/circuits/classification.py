@@ -80,6 +80,8 @@ class FoundGroup:
 
 def assur_groups(linkage: Linkage, chain: Chain) -> list[FoundGroup] | None:
     """The groups of a chain of lower pairs, or ``None`` if it is not determined joint by joint."""
+    if any(part.pushes for part in linkage.parts):
+        return None  # lengths of other joints determine a length
     driven = driven_joints(linkage, chain)
     held: list[Held] = []
     welds: list[tuple[str, str]] = []

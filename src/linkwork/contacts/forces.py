@@ -17,13 +17,13 @@ from linkwork.core.table.rows import Piecewise
 from linkwork.forces.reactions.coupling import Sided
 from linkwork.forces.reactions.free_bodies import Act, FreeBodies, Holder
 from linkwork.forces.reactions.parts import (
+    acts_along,
     join_part,
     line_of,
     mesh,
     moving_most,
     normal_away,
     of_input,
-    push_along,
     sliding,
 )
 
@@ -122,15 +122,15 @@ def join_curve(curve: Curve, bodies: FreeBodies) -> None:
         bodies.rub_force(curve.name, size, pair, place, -1j * normal, rates)
 
 
-@push_along.register
-def drive_curve(curve: Curve, bodies: FreeBodies) -> int:
+@acts_along.register
+def along_curve(curve: Curve, bodies: FreeBodies) -> tuple[Act, ...]:
     """The force along the curve for a unit of work per unit of its coordinate."""
     tangent = _tangent(curve, bodies)
     # the coordinate of a curve is no arc length: the force is the work per unit of it
     along = tangent / np.abs(tangent) ** 2
     place = bodies.geometry.place(curve.point).v
     pin, on = bodies.at(curve.point), bodies.link(curve.on)
-    return bodies.unknown(Act(pin, place, along), Act(on, place, -along))
+    return Act(pin, place, along), Act(on, place, -along)
 
 
 def _tangent(curve: Curve, bodies: FreeBodies) -> ComplexArray:

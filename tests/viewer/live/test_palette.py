@@ -32,7 +32,7 @@ def typed(field: PaletteField, entry: Any) -> Typed:
     match field.entry:
         case "flag":
             return "true" if entry else "false"
-        case "points" | "links":
+        case "points" | "links" | "lengths":
             return tuple(entry)
         case "numbers":
             return (", ".join(map(str, entry)),)

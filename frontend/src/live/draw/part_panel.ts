@@ -7,7 +7,7 @@ import { fill } from "../fields";
 import { driving } from "./tool_edits";
 
 /** Entries that name other things. */
-const NAMES = new Set(["point", "points", "link", "links", "slider"]);
+const NAMES = new Set(["point", "points", "link", "links", "slider", "length", "lengths"]);
 
 type Entry = string | readonly string[] | undefined;
 

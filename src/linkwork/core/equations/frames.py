@@ -10,7 +10,7 @@ from __future__ import annotations
 
 import cmath
 import math
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import partial
 
@@ -154,7 +154,7 @@ class Frames:
         if length is None:
             rod = self.vector_term(1.0 + 0j, None, name, name)
             self.lengths.append(name)
-            self.start[name] = abs(span.high)
+            self.start[name], self.sketched[name] = abs(span.high), lambda: abs(span)
         else:
             symbol = canonical(f"{name}_rod")
             self.symbols[symbol] = length.high
@@ -397,11 +397,11 @@ class PartRows:
         self,
         label: str,
         turns: list[tuple[str, float]],
-        length: tuple[str, float] | None = None,
+        lengths: Sequence[tuple[str, float]] = (),
         total: Precise | None = None,
         measured: tuple[str, float] = ("", 1.0),
     ) -> None:
-        """Add Σ weight · angle of body (+ weight · length) = total, by default as sketched.
+        """Add Σ weight · angle of body (+ Σ weight · length) = total, by default as sketched.
 
         ``measured``: the name of what the sketch then gives, and its weight in the total.
         """
@@ -409,10 +409,9 @@ class PartRows:
         weights, constant = frames.angles_of(
             (body, uniform_value(weight)) for body, weight in turns
         )
-        if length is not None:
-            weights[length[0]] = length[1]
+        weights |= dict(lengths)
         # by default the total of the sketch: gears can mesh at any tooth
-        kind = "angle" if length is None else "length"
+        kind = "length" if lengths else "angle"
         if total is None:
             quantity, weight = measured
             value = frames.sketched_sum(weights) + constant

@@ -100,7 +100,7 @@ def write_rack(rack: Rack, key: Key, rows: PartRows) -> None:
     rows.tie(
         rack.name,
         turns,
-        length=(rack.slider, 1.0),
+        lengths=[(rack.slider, 1.0)],
         measured=(f"{rack.slider} at {rack.pinion} = 0", 1.0),
     )
 
@@ -127,7 +127,7 @@ def _roll_on_line(rolling: Rolling, key: Key, rows: PartRows) -> None:
     frames.add_guide((rolling.name, rolling.on, rolling.line), rolling.center, radius, name)
     turns = [(rolling.wheel, radius.high), (rolling.on, -radius.high)]
     measured = (f"{rolling.name} at {rolling.wheel} = 0", 1.0)
-    rows.tie(rolling.name, turns, length=(rolling.name, 1.0), measured=measured)
+    rows.tie(rolling.name, turns, [(rolling.name, 1.0)], measured=measured)
 
 
 def _roll_on_circle(rolling: Rolling, rows: PartRows) -> None:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from functools import singledispatch
 from typing import Any
 
@@ -21,11 +22,15 @@ from linkwork.core.mechanism.part.weld import Weld
 from linkwork.core.results.quantity import Kind
 from linkwork.forces.reactions.applied import AppliedLoads
 from linkwork.forces.reactions.coupling import LargerOf, Sided, Size
-from linkwork.forces.reactions.free_bodies import Act, FreeBodies, Holder
+from linkwork.forces.reactions.free_bodies import Act, FreeBodies, Holder, Reading
 from linkwork.forces.reactions.geometry import Geometry
 
 # ----------------------------------------------------------------------
 # Reactions of parts, by their kinds.
+
+
+#: Unknowns with their factors.
+Terms = tuple[tuple[int, Array | float], ...]
 
 
 @singledispatch
@@ -35,9 +40,14 @@ def join_part(part: Part, bodies: FreeBodies) -> None:
 
 
 @singledispatch
-def push_along(part: Part, bodies: FreeBodies) -> int:
-    """Add the force along the displacement of a part; the number of the unknown."""
+def acts_along(part: Part, bodies: FreeBodies) -> tuple[Act, ...]:
+    """A unit force along the displacement of a part, and its reaction."""
     raise NotImplementedError(type(part).__name__)
+
+
+@singledispatch
+def read_along(part: Part, bodies: FreeBodies, terms: Terms) -> None:
+    """Name the forces that a force along the displacement exerts beside it: in most parts none."""
 
 
 def join_parts(bodies: FreeBodies) -> None:
@@ -57,10 +67,17 @@ def join_loads(bodies: FreeBodies) -> None:
 
 def drive_part(bodies: FreeBodies, name: str) -> int:
     """Add the force along the displacement of the part with this name."""
+    part = part_named(bodies, name)
+    force = bodies.unknown(*acts_along(part, bodies))
+    read_along(part, bodies, ((force, 1.0),))
+    return force
+
+
+def part_named(bodies: FreeBodies, name: str) -> Part:
+    """The part with a displacement of this name."""
     part = next(part for part in bodies.parts if part.drive and part.label == name)
     open_room(type(part), "forces")
-    found: int = push_along(part, bodies)
-    return found
+    return part
 
 
 # ----------------------------------------------------------------------
@@ -114,10 +131,11 @@ def line_of(line: tuple[str, str], geometry: Geometry) -> ComplexArray:
 def along_line(
     bodies: FreeBodies, holder: Holder, point: str, on: str, line: tuple[str, str],
     turn: complex = 1.0,
-) -> int:  # fmt: skip
-    """A force at a point of one body along a line of another, or turned to the left of it."""
+) -> tuple[Act, Act]:  # fmt: skip
+    """A unit force at a point of one body along a line of another, or turned to the left of it."""
     way = turn * line_of(line, bodies.geometry)
-    return bodies.pair(holder, bodies.link(on), bodies.geometry.place(point).v, way)
+    place = bodies.geometry.place(point).v
+    return Act(holder, place, way), Act(bodies.link(on), place, -way)
 
 
 def rub_on_line(
@@ -230,22 +248,22 @@ def _strand(belt: Belt, bodies: FreeBodies, side: float) -> tuple[ComplexArray, 
 def join_cylinder(cylinder: Cylinder, bodies: FreeBodies) -> None:
     """A cylinder that is not driven transmits no force."""
     driven = {which.drives for which in bodies.linkage.inputs}
-    if ("cylinder", cylinder.name) not in driven:
-        _read_ends(cylinder, bodies, None)
+    coupled = {name for part in bodies.parts for name in part.pushes}
+    if ("cylinder", cylinder.name) not in driven and cylinder.name not in coupled:
+        read_cylinder(cylinder, bodies, ())
 
 
-@push_along.register
-def drive_cylinder(cylinder: Cylinder, bodies: FreeBodies) -> int:
+@acts_along.register
+def along_cylinder(cylinder: Cylinder, bodies: FreeBodies) -> tuple[Act, ...]:
     """The force that pushes its ends apart."""
     first, second = (bodies.geometry.place(point).v for point in cylinder.between)
     along = (second - first) / np.abs(second - first)
     start, end = map(bodies.at, cylinder.between)
-    force = bodies.unknown(Act(end, second, along), Act(start, first, -along))
-    _read_ends(cylinder, bodies, force)
-    return force
+    return Act(end, second, along), Act(start, first, -along)
 
 
-def _read_ends(cylinder: Cylinder, bodies: FreeBodies, force: int | None) -> None:
+@read_along.register
+def read_cylinder(cylinder: Cylinder, bodies: FreeBodies, terms: Terms) -> None:
     """The forces of the pins on the cylinder."""
     first, second = (bodies.geometry.place(point).v for point in cylinder.between)
     along = (second - first) / np.abs(second - first)
@@ -258,7 +276,16 @@ def _read_ends(cylinder: Cylinder, bodies: FreeBodies, force: int | None) -> Non
         parts: dict[str, Array] = {"x": along.real, "y": along.imag}
         for axis, part in parts.items():
             about = f"force of the pin {point} on {cylinder.name}"
-            bodies.read(f"{stem}.{axis}", Kind.FORCE, about, force, sign * part)
+            name = f"{stem}.{axis}"
+            own = tuple((unknown, sign * part * factor) for unknown, factor in terms)
+            # a cylinder of two couplings has the forces of both
+            known = [k for k, reading in enumerate(bodies.readings) if reading.name == name]
+            for k in known:
+                terms_of_both = (*bodies.readings[k].terms, *own)
+                bodies.readings[k] = replace(bodies.readings[k], terms=terms_of_both)
+            if not known:
+                reading = Reading(name=name, kind=Kind.FORCE, about=about, terms=own)
+                bodies.readings.append(reading)
 
 
 # ----------------------------------------------------------------------
@@ -358,8 +385,8 @@ def _contact(
     return middle + side * large * out, -out, 1j * out
 
 
-@push_along.register
-def drive_rolling(rolling: Rolling, bodies: FreeBodies) -> int:
+@acts_along.register
+def along_rolling(rolling: Rolling, bodies: FreeBodies) -> tuple[Act, ...]:
     """The force on the wheel's centre along the line."""
     assert rolling.line is not None
     pin = bodies.at(rolling.center)
@@ -374,7 +401,7 @@ def drive_rolling(rolling: Rolling, bodies: FreeBodies) -> int:
 def join_slider(slider: Slider, bodies: FreeBodies) -> None:
     """The normal force at the slider's first point, positive to the left, and the moment."""
     link, on = bodies.link(slider.link), bodies.link(slider.on)
-    force = along_line(bodies, link, slider.points[0], slider.on, slider.line, 1j)
+    force = bodies.unknown(*along_line(bodies, link, slider.points[0], slider.on, slider.line, 1j))
     about = f"force of {slider.on} on {slider.link} at {slider.points[0]}, to the left of its line"
     bodies.read(f"{slider.name}.normal", Kind.FORCE, about, force)
     # a slider transmits a moment: its link cannot turn on the other
@@ -393,8 +420,8 @@ def join_slider(slider: Slider, bodies: FreeBodies) -> None:
     rub_on_line(slider.name, bodies, size, (link, on), slider.points[0], slider.line)
 
 
-@push_along.register
-def drive_slider(slider: Slider, bodies: FreeBodies) -> int:
+@acts_along.register
+def along_slider(slider: Slider, bodies: FreeBodies) -> tuple[Act, ...]:
     """The force along the line at the slider's first point."""
     return along_line(bodies, bodies.link(slider.link), slider.points[0], slider.on, slider.line)
 
@@ -407,7 +434,7 @@ def drive_slider(slider: Slider, bodies: FreeBodies) -> int:
 def join_slot(slot: Slot, bodies: FreeBodies) -> None:
     """The normal force on the pin, positive to the left of the line."""
     pin = bodies.at(slot.point)
-    force = along_line(bodies, pin, slot.point, slot.on, slot.line, 1j)
+    force = bodies.unknown(*along_line(bodies, pin, slot.point, slot.on, slot.line, 1j))
     about = f"force of the slot on the pin {slot.point}, to the left of its line"
     bodies.read(f"{slot.name}.normal", Kind.FORCE, about, force)
     friction = bodies.friction(slot.name)
@@ -417,8 +444,8 @@ def join_slot(slot: Slot, bodies: FreeBodies) -> None:
         rub_on_line(slot.name, bodies, size, (pin, bodies.link(slot.on)), slot.point, slot.line)
 
 
-@push_along.register
-def drive_slot(slot: Slot, bodies: FreeBodies) -> int:
+@acts_along.register
+def along_slot(slot: Slot, bodies: FreeBodies) -> tuple[Act, ...]:
     """The force on the pin along the slot."""
     return along_line(bodies, bodies.at(slot.point), slot.point, slot.on, slot.line)
 

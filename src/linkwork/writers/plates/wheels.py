@@ -179,7 +179,7 @@ def rack_meshes(
         if not isinstance(part, ToothedPart) or pairs is None:
             continue
         for coupling in pairs.couplings:
-            if coupling.slide is None:
+            if not coupling.slides:
                 continue
             disc = next(f for f in part.figures(linkage, {}) if isinstance(f, DiscFigure))
             size = 2.0 * millimetres * disc.radius
@@ -188,7 +188,7 @@ def rack_meshes(
             pinion = known.get(disc.key, blank)
             if _touch(pinion):
                 raise touching_teeth(part.name, f"{pinion.teeth} teeth of the pinion")
-            name, factor = coupling.slide
+            name, factor = coupling.slides[0]
             yield RackMesh(name=part.name, pinion=pinion, guide=name, side=-factor)
 
 

@@ -210,8 +210,7 @@ class JointTree:
             for joint in self.path(body):
                 if joint.edge.kind is PairKind.PIN:
                     factors[joint.name] = factors.get(joint.name, 0.0) + factor
-        if coupling.slide is not None:
-            name, factor = coupling.slide
+        for name, factor in coupling.slides:
             joint = next(
                 j for j in self.joints if j.edge.kind is PairKind.SLIDE and j.edge.name == name
             )

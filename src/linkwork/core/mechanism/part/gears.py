@@ -492,7 +492,7 @@ class Rack(ToothedPart):
         radius = linkage.numbers(self.radius)
         turns = ((self.pinion, radius), (slider.on, -radius))
         slide = (self.slider, -linkage.side_of(slider.line, self.center))
-        return KinematicPairs(couplings=(Coupling(name=self.name, turns=turns, slide=slide),))
+        return KinematicPairs(couplings=(Coupling(name=self.name, turns=turns, slides=(slide,)),))
 
     def check(self, checks: PartChecks) -> None:
         """Check that the pinion is on the link along which the rack slides."""

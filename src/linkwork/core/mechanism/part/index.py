@@ -23,6 +23,7 @@ from linkwork.core.mechanism.part.weld import Weld
 if TYPE_CHECKING:
     from linkwork.contacts.cams import Cam
     from linkwork.contacts.curves import Curve, NoncircularGear
+    from linkwork.couplings.coupling import LinearCoupling
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -40,6 +41,7 @@ class _Tables:
     rolling: tuple[Rolling, ...] = ()
     cams: tuple[Cam, ...] = ()
     curves: tuple[Curve, ...] = ()
+    couplings: tuple[LinearCoupling, ...] = ()  # noqa: V107
     springs: tuple[Spring, ...] = ()
     loads: tuple[Load, ...] = ()
 

@@ -110,7 +110,7 @@ class Coupling:
 
     name: str
     turns: tuple[tuple[str, float], ...]
-    slide: tuple[str, float] | None = None
+    slides: tuple[tuple[str, float], ...] = ()
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -213,6 +213,11 @@ class Part:
     def drive(self) -> str:
         """The input key that drives the part: slider or cylinder."""
         return ""
+
+    @property
+    def pushes(self) -> tuple[str, ...]:
+        """Names of sliders, slots and cylinders along which it exerts a force."""
+        return ()
 
     @property
     def turning(self) -> tuple[str, ...]:
