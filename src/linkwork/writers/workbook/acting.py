@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 
 from linkwork.core.expression.grammar import parse
 from linkwork.core.foundation.units import AngleUnit
-from linkwork.writers.formulas.closure_formulas import CellFormula
+from linkwork.writers.formulas.closure_formulas import cell_text, of_radians, value_of
 
 #: The distance of the points ``a`` and ``b``.
 SPAN = "hypot(bx-ax, by-ay)"
@@ -55,13 +55,13 @@ NO, ONE = Entry("0", 0.0), Entry("1", 1.0)
 
 def computed(text: str, names: dict[str, Entry], unit: AngleUnit = AngleUnit.RADIAN) -> Entry:
     """A formula of entries."""
-    formula = CellFormula(parse(text), unit)
+    formula = of_radians(parse(text), unit)
     cells = {
         name: entry.text if _CELL.fullmatch(entry.text) else f"({entry.text})"
         for name, entry in names.items()
     }
-    value = formula.value({name: entry.value for name, entry in names.items()})
-    return Entry(formula.text(cells), float(value))
+    value = value_of(formula, {name: entry.value for name, entry in names.items()})
+    return Entry(cell_text(formula, cells), float(value))
 
 
 def minus(entry: Entry) -> Entry:

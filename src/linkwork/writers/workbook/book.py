@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 import re
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable
 from dataclasses import dataclass, field
 from functools import cache, cached_property
 from typing import Any
@@ -13,7 +13,7 @@ import numpy as np
 
 from linkwork.core.equations.compiling import coordinate_name
 from linkwork.core.equations.model import Variable
-from linkwork.core.expression.tree import names_in
+from linkwork.core.expression.tree import Node, names_in
 from linkwork.core.foundation.arrays import AnyArray, Array, BoolArray, IndexArray
 from linkwork.core.foundation.names import canonical, pretty
 from linkwork.core.mechanism.bodies import DiscFigure
@@ -21,7 +21,7 @@ from linkwork.core.motion.model import Model, leading_input
 from linkwork.core.numerics.newton import corrections
 from linkwork.core.results.motion import Motion
 from linkwork.core.results.quantity import Kind
-from linkwork.writers.formulas.closure_formulas import CellFormula, ClosureFormulas
+from linkwork.writers.formulas.closure_formulas import ClosureFormulas, cell_text, value_of
 from linkwork.writers.formulas.rate_formulas import RateFormulas
 from linkwork.writers.formulas.traced import Dimension, TracedEquations
 
@@ -324,7 +324,7 @@ class Book:
                 self.names.claim(coordinate_name(point, axis), f"{point}.{axis}")
         for part in self.closure.coefficients.values():
             self.names.claim(part.key, part.wanted)
-            self.values[part.key] = float(part.formula.value(self.values))
+            self.values[part.key] = float(value_of(part.formula, self.values))
         for name in self.closure.outputs:
             self.names.claim(f"output {name}", name)
 
@@ -359,30 +359,7 @@ class Book:
         """The dimensions with cells: those of the file, and points used by formulas."""
         kept = ("dimensions", "lengths", "angles")
         # a sketch has many points that formulas do not use
-        return [d for d in self.traced.dimensions if d.kind in kept or d.key in self.used]
-
-    @cached_property
-    def used(self) -> set[str]:
-        """The keys of everything that a formula uses, derived dimensions included."""
-        used = set(self._used())
-        for dimension in reversed(self.traced.dimensions):
-            if dimension.key in used and dimension.formula is not None:
-                used |= {node.name for node in names_in(dimension.formula)}
-        return used
-
-    def _used(self) -> Iterator[str]:
-        closure = self.closure
-        formulas = [part.formula for part in closure.coefficients.values()]
-        formulas += [formula for pair in closure.points.values() for formula in pair]
-        formulas += [*closure.links.values(), *closure.outputs.values()]
-        formulas += [formula for pair in self.rates.of.values() for formula in pair]
-        formulas += [released for _, released in closure.released]
-        for block, sides in zip(closure.blocks, self.rates.sides, strict=True):
-            formulas += [formula for pair in sides for formula in pair]
-            for row in block.rows:
-                formulas += [row.formula, *row.slopes]
-        for formula in formulas:
-            yield from (node.name for node in names_in(formula.node))
+        return [d for d in self.traced.dimensions if d.kind in kept or d.key in self.rates.used]
 
     @cached_property
     def linkwork_columns(self) -> dict[str, int]:
@@ -422,9 +399,9 @@ class Book:
         """Internal units per file unit."""
         return self.model.units.scale(Kind(variable.kind))
 
-    def text(self, formula: CellFormula, **instead: str) -> str:
+    def text(self, formula: Node, **instead: str) -> str:
         """The text of a formula in a cell."""
-        return "=" + formula.text({**self.names.cells, **instead})
+        return "=" + cell_text(formula, {**self.names.cells, **instead})
 
     def shown(self, variable: Variable) -> str:
         """The name of a variable in headings."""
@@ -466,10 +443,10 @@ class Book:
             value = cached(value) if known else NO_VALUE
         sheet.write_formula(FIRST + k, column, formula, self.style[look], value)
 
-    def column(self, sheet: Any, column: int, formula: CellFormula, look: str) -> Array:
+    def column(self, sheet: Any, column: int, formula: Node, look: str) -> Array:
         """Write a formula in all rows; returns its values (R,)."""
-        values = self.over_rows(formula.value(self.values))
-        if not any(True for _ in names_in(formula.node)):
+        values = self.over_rows(value_of(formula, self.values))
+        if not any(True for _ in names_in(formula)):
             for k, value in enumerate(values.tolist()):
                 sheet.write_number(FIRST + k, column, value, self.style[look])
             return values

@@ -14,7 +14,7 @@ from linkwork.core.equations.model import Variable
 from linkwork.core.foundation.names import canonical
 from linkwork.core.foundation.statuses import Certification
 from linkwork.core.results.quantity import Kind
-from linkwork.writers.formulas.closure_formulas import cell_number
+from linkwork.writers.formulas.closure_formulas import cell_number, cell_text
 from linkwork.writers.workbook.book import CYCLE, FIRST, LINKWORK, NEWTON, Book, apart, column_name
 from linkwork.writers.workbook.dimension_page import input_table
 from linkwork.writers.workbook.layout import print_table
@@ -213,7 +213,7 @@ class StatusFormulas:
             variable = next(
                 v for v in book.model.equations.unknowns if v.name == redundant.variable
             )
-            released = formula.text(book.names.cells)
+            released = cell_text(formula, book.names.cells)
             near = cell_number(float(f"{_CELL_AGREES * book.model.equations.length_scale:.1e}"))
             fits = f"ABS({book.names.cells[variable.symbol]}-({released}))<={near}"
             link = redundant.link[:_LONGEST].replace('"', "'")

@@ -11,7 +11,7 @@ from linkwork.core.equations.model import Variable
 from linkwork.core.expression.tree import text
 from linkwork.core.foundation.arrays import Array
 from linkwork.core.results.quantity import Kind, Rate
-from linkwork.writers.formulas.closure_formulas import CellFormula, cell_number
+from linkwork.writers.formulas.closure_formulas import cell_number, of_radians
 from linkwork.writers.formulas.rate_formulas import dimension_kinds, rate_key
 from linkwork.writers.formulas.traced import Dimension
 from linkwork.writers.workbook.book import CYCLE, DIMENSIONS, FIRST, Book, cached, column_name
@@ -145,10 +145,10 @@ class _Page:
         elif dimension.formula is None:
             self.sheet.write_number(row, 1, dimension.value, book.style["input"])
         else:
-            formula = CellFormula(dimension.formula, book.model.equations.angle)
+            formula = of_radians(dimension.formula, book.model.equations.angle)
             shown = book.text(formula)
             self.sheet.write_formula(row, 1, shown, book.style["derived"], dimension.value)
-        used = dimension.live and dimension.key in book.used - set(book.traced.settled)
+        used = dimension.live and dimension.key in book.rates.used - set(book.traced.settled)
         computed = dimension.formula is not None and dimension.live
         self._watch(row, dimension.value, used=used, computed=computed)
 

@@ -9,11 +9,11 @@ from typing import Any
 from linkwork.core.equations.compiling import coordinate_name
 from linkwork.core.equations.model import Variable
 from linkwork.core.expression.grammar import parse
-from linkwork.core.expression.tree import Name, names_in
+from linkwork.core.expression.tree import Name, Node, names_in
 from linkwork.core.foundation.names import GROUND, canonical
 from linkwork.core.results.quantity import Kind
 from linkwork.forces.reactions.drives import effort_kind, effort_name
-from linkwork.writers.formulas.closure_formulas import CellFormula
+from linkwork.writers.formulas.closure_formulas import of_radians, value_of
 from linkwork.writers.formulas.rate_formulas import rate_key
 from linkwork.writers.workbook.book import FIRST, FORCES, Book, column_name
 from linkwork.writers.workbook.layout import print_table
@@ -62,7 +62,7 @@ class _Page:
         book.row_numbers(sheet)
         for variable in book.model.equations.inputs:
             book.head(sheet, self.end, book.shown(variable), book.unit(variable.kind))
-            book.column(sheet, self.end, CellFormula(Name(variable.symbol)), "number")
+            book.column(sheet, self.end, Name(variable.symbol), "number")
             self.end += 1
         linkage = self.cells.linkage
         turned = [load.turns_with for load in linkage.loads if load.turns_with]
@@ -89,21 +89,21 @@ class _Page:
 
     def _add(self, key: str, title: str, unit: str, text: str, names: Mapping[str, str]) -> str:
         """A column of a formula; ``names`` are the keys of its names."""
-        return self._column(key, title, unit, CellFormula(parse(text, comparing=True)), names)
+        return self._column(key, title, unit, parse(text, comparing=True), names)
 
     def _column(
-        self, key: str, title: str, unit: str, formula: CellFormula, names: Mapping[str, str]
+        self, key: str, title: str, unit: str, formula: Node, names: Mapping[str, str]
     ) -> str:
         book = self.book
         book.names.claim(key, key.replace(" ", "_"))
         book.define(key, FORCES, f"${column_name(self.end)}1")
         book.head(self.sheet, self.end, title, unit)
         cells = {name: book.names.cells[key_of] for name, key_of in names.items()}
-        values = formula.value({**book.values, **{n: book.values[k] for n, k in names.items()}})
+        values = value_of(formula, {**book.values, **{n: book.values[k] for n, k in names.items()}})
         values = book.over_rows(values)
         shown = book.text(formula, **cells)
         for k, value in enumerate(values.tolist()):
-            if any(True for _ in names_in(formula.node)):
+            if any(True for _ in names_in(formula)):
                 book.put(self.sheet, k, self.end, shown, "number", value)
             else:
                 self.sheet.write_number(FIRST + k, self.end, value, book.style["number"])
@@ -181,7 +181,7 @@ class _Page:
         symbol = canonical(link)
         names = {"q": symbol} if symbol in self.book.values else {}
         for axis, turned, still in (("x", "cos(q)", "1"), ("y", "sin(q)", "0")):
-            formula = CellFormula(parse(turned if names else still), self.cells.linkage.angle)
+            formula = of_radians(parse(turned if names else still), self.cells.linkage.angle)
             self._column(f"{link} direction {axis}", f"direction {axis}", "", formula, names)
         for order, word, per in _SPINS:
             key = rate_key(symbol, order)
@@ -234,12 +234,10 @@ class _Page:
         self.columns.masses.append(link)
         self.groups.append((f"Mass of {link}", start, self.end - 1))
 
-    def _load(
-        self, k: int, load: Any, parts: tuple[CellFormula, ...], names: Mapping[str, str]
-    ) -> None:
+    def _load(self, k: int, load: Any, parts: tuple[Node, ...], names: Mapping[str, str]) -> None:
         linkage, start = self.cells.linkage, self.end
         cells = dict(names)
-        if any(node.name == "t" for part in parts for node in names_in(part.node)):
+        if any(node.name == "t" for part in parts for node in names_in(part)):
             cells["t"] = self._time()
         if load.torque is not None:
             key = self._part(
@@ -266,11 +264,11 @@ class _Page:
         self.groups.append((load.label.capitalize(), start, self.end - 1))
 
     def _part(
-        self, key: str, title: str, unit: str, part: CellFormula, names: Mapping[str, str], n: int
+        self, key: str, title: str, unit: str, part: Node, names: Mapping[str, str], n: int
     ) -> str:
-        plain = isinstance(part.node, Name) and part.node.name == "q"
+        plain = isinstance(part, Name) and part.name == "q"
         used = {"q": names[f"q {n}"]} if plain else {
-            node.name: names[node.name] for node in names_in(part.node) if node.name in names
+            node.name: names[node.name] for node in names_in(part) if node.name in names
         }  # fmt: skip
         return self._column(key, title, unit, part, used)
 

@@ -19,7 +19,7 @@ from linkwork.core.mechanism.linkage import Linkage
 from linkwork.core.mechanism.part.part import carriers
 from linkwork.core.mechanism.part.springs import Load
 from linkwork.forces.reactions.parts import wound_angle
-from linkwork.writers.formulas.closure_formulas import CellFormula
+from linkwork.writers.formulas.closure_formulas import of_radians
 from linkwork.writers.formulas.rate_formulas import rate_key
 from linkwork.writers.workbook.book import Book
 from linkwork.writers.workbook.layout import print_on_one_page
@@ -88,7 +88,7 @@ class LoadCells:
     book: Book
     sheet: Any
     row: int = 3
-    loads: list[tuple[Load, tuple[CellFormula, ...], dict[str, str]]] = field(default_factory=list)
+    loads: list[tuple[Load, tuple[Node, ...], dict[str, str]]] = field(default_factory=list)
 
     @property
     def linkage(self) -> Linkage:
@@ -195,11 +195,11 @@ def _write_load(cells: LoadCells, k: int, load: Load) -> None:
             key = f"load {k} {word}"
             name = f"load{k}_{axis}" if load.torque is None else f"load{k}_torque"
             cells.number(key, name, linkage.numbers(number), unit, load.label)
-            parts.append(CellFormula(parse("q")))
+            parts.append(parse("q"))
             names[f"q {len(parts)}"] = key
             continue
         tree: Node = parse(formula, comparing=True)
-        parts.append(CellFormula(tree, linkage.angle))
+        parts.append(of_radians(tree, linkage.angle))
         for node in names_in(tree):
             key_of = _key(cells.book, node.name)
             if key_of:

@@ -10,9 +10,9 @@ from typing import Any
 import numpy as np
 
 from linkwork.core.equations.model import Variable
-from linkwork.core.expression.tree import names_in
+from linkwork.core.expression.tree import Node, names_in
 from linkwork.core.foundation.errors import InputError
-from linkwork.writers.formulas.closure_formulas import BlockFormulas, CellFormula, cell_number
+from linkwork.writers.formulas.closure_formulas import BlockFormulas, cell_number, value_of
 from linkwork.writers.workbook.book import CYCLE, FIRST, NEWTON, Book, apart, cached, column_name
 from linkwork.writers.workbook.layout import PRINTED, print_table
 
@@ -218,13 +218,13 @@ class _Block:
     def _cells(
         self,
         column: int,
-        formula: CellFormula,
+        formula: Node,
         cells: dict[str, str],
         values: dict[str, Any],
         look: str,
     ) -> None:
-        results = self.book.over_rows(formula.value(values)).tolist()
-        if not any(True for _ in names_in(formula.node)):
+        results = self.book.over_rows(value_of(formula, values)).tolist()
+        if not any(True for _ in names_in(formula)):
             for k, value in enumerate(results):
                 self.sheet.write_number(FIRST + k, column, value, self.book.style[look])
             return

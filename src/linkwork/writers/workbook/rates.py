@@ -10,12 +10,12 @@ import numpy as np
 
 from linkwork.core.equations.compiling import coordinate_name
 from linkwork.core.equations.model import Variable
-from linkwork.core.expression.tree import Name
+from linkwork.core.expression.tree import Name, Node
 from linkwork.core.foundation.arrays import AnyArray
 from linkwork.core.foundation.names import canonical
 from linkwork.core.numerics.newton import corrections
 from linkwork.core.results.quantity import Kind, Rate
-from linkwork.writers.formulas.closure_formulas import CellFormula
+from linkwork.writers.formulas.closure_formulas import value_of
 from linkwork.writers.formulas.rate_formulas import rate_key
 from linkwork.writers.workbook.book import FIRST, LINKWORK, NEWTON, VELOCITIES, Book, column_name
 from linkwork.writers.workbook.layout import print_table
@@ -115,7 +115,7 @@ class _VelocityPagePage:
         book.row_numbers(sheet)
         for column, variable in enumerate(book.model.equations.inputs, 1):
             book.head(sheet, column, book.shown(variable), book.unit(variable.kind))
-            book.column(sheet, column, CellFormula(Name(variable.symbol)), "number")
+            book.column(sheet, column, Name(variable.symbol), "number")
         for order in (1, 2):
             for b in range(len(book.closure.blocks)):
                 self._block(b, order)
@@ -157,7 +157,7 @@ class _VelocityPagePage:
                 rates[:, c] = derivative[book.iterations.rows] * book.speed**order
         live = book.iterations.live
         if book.rates.sides[b] and live.any():
-            sides = [pair[order - 1].value(book.values) for pair in book.rates.sides[b]]
+            sides = [value_of(pair[order - 1], book.values) for pair in book.rates.sides[b]]
             rates[live] = rates_of_block(book, b, sides)[live]
         return rates
 
@@ -195,7 +195,7 @@ class _VelocityPagePage:
                 values = self._formulas(column, book.rates.of[key][order - 1])
                 book.values[rate_key(key, order)] = values
 
-    def _formulas(self, column: int, formula: CellFormula) -> Any:
+    def _formulas(self, column: int, formula: Node) -> Any:
         return self.book.column(self.sheet, column, formula, "number")
 
 
@@ -205,7 +205,7 @@ def rates_of_block(book: Book, b: int, sides: Sequence[Any]) -> AnyArray:
     for k in block.unknowns:  # of the last iteration's Jacobian
         symbol = book.model.equations.unknowns[k].symbol
         before[symbol] = book.iterations.values[-2][:, k]
-    slopes = [[book.over_rows(part.value(before)) for part in row.slopes] for row in block.rows]
+    slopes = [[book.over_rows(value_of(part, before)) for part in row.slopes] for row in block.rows]
     jacobian = np.moveaxis(np.array(slopes), 2, 0)
     right = np.stack([book.over_rows(side) for side in sides], axis=1)
     rates = np.full((book.count, len(block.unknowns)), np.nan)
@@ -249,7 +249,7 @@ class _PartialPagePage:
         book.row_numbers(sheet)
         for variable in inputs:
             book.head(sheet, self.end, book.shown(variable), book.unit(variable.kind))
-            book.column(sheet, self.end, CellFormula(Name(variable.symbol)), "number")
+            book.column(sheet, self.end, Name(variable.symbol), "number")
             self.end += 1
         self.groups.append(("Input", 1, self.end - 1))
         for variable in inputs:
@@ -277,7 +277,7 @@ class _PartialPagePage:
                 self._column(formula, cells, values)
             self._group(f"Right sides by {shown}", first)
             rates = rates_of_block(
-                book, b, [formula.value({**book.values, **values}) for formula in formulas]
+                book, b, [value_of(formula, {**book.values, **values}) for formula in formulas]
             )
             begin = self.end
             for c, k in enumerate(block.unknowns):
@@ -296,7 +296,7 @@ class _PartialPagePage:
         begin = self.end
         for key, name in self._others():
             formula = book.rates.of[key][0]
-            column = np.array(book.over_rows(formula.value({**book.values, **values})))
+            column = np.array(book.over_rows(value_of(formula, {**book.values, **values})))
             texts = [book.text(formula, **cells)] * book.count
             self._named(key, name, which, cells, values, column, texts)
         self._group(f"Rates by {shown}", begin)
@@ -312,9 +312,9 @@ class _PartialPagePage:
                 if coordinate_name(point, axis) in rates:
                     yield coordinate_name(point, axis), f"{point}.{axis}"
 
-    def _column(self, formula: CellFormula, cells: dict[str, str], values: dict[str, Any]) -> None:
+    def _column(self, formula: Node, cells: dict[str, str], values: dict[str, Any]) -> None:
         book = self.book
-        column = book.over_rows(formula.value({**book.values, **values}))
+        column = book.over_rows(value_of(formula, {**book.values, **values}))
         for row, value in enumerate(column.tolist()):
             book.put(self.sheet, row, self.end, book.text(formula, **cells), "number", value)
         self.end += 1
