@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 import re
-from collections.abc import Iterable
+from collections.abc import Iterator
 from dataclasses import dataclass, field
 from functools import cache, cached_property
 from typing import Any
@@ -13,7 +13,7 @@ import numpy as np
 
 from linkwork.core.equations.compiling import coordinate_name
 from linkwork.core.equations.model import Variable
-from linkwork.core.expression.tree import Node, names_in
+from linkwork.core.expression.tree import Node
 from linkwork.core.foundation.arrays import AnyArray, Array, BoolArray, IndexArray
 from linkwork.core.foundation.names import canonical, pretty
 from linkwork.core.mechanism.bodies import DiscFigure
@@ -22,7 +22,7 @@ from linkwork.core.numerics.newton import corrections
 from linkwork.core.results.motion import Motion
 from linkwork.core.results.quantity import Kind
 from linkwork.writers.formulas.closure_formulas import ClosureFormulas, cell_text, value_of
-from linkwork.writers.formulas.rate_formulas import RateFormulas
+from linkwork.writers.formulas.rate_formulas import RateFormulas, rate_key
 from linkwork.writers.formulas.traced import Dimension, TracedEquations
 
 #: Names that spreadsheets read as a cell, row, column or Boolean.
@@ -327,6 +327,22 @@ class Book:
             self.values[part.key] = float(value_of(part.formula, self.values))
         for name in self.closure.outputs:
             self.names.claim(f"output {name}", name)
+        for order, word in ((1, "velocity"), (2, "acceleration")):
+            for key in (*(v.symbol for v in self.model.equations.unknowns), *self.rates.of):
+                stem = self.names.cells[key].rstrip("_")
+                self.names.claim(rate_key(key, order), f"{stem}.{word}")
+
+    def quantities(self) -> Iterator[tuple[str, str, Kind, Node]]:
+        """Key, shown name, kind and formula of links, points and outputs, after their operands."""
+        closure = self.closure
+        for link, formula in closure.links.items():
+            yield canonical(link), link, Kind.ANGLE, formula
+        for point, pair in closure.points.items():
+            for axis, formula in zip("xy", pair, strict=True):
+                yield coordinate_name(point, axis), f"{point}.{axis}", Kind.LENGTH, formula
+        for name, formula in closure.outputs.items():
+            kind = Kind(self.model.equations.outputs[name].kind)
+            yield f"output {name}", name, kind, formula
 
     @property
     def variables(self) -> tuple[Variable, ...]:
@@ -419,41 +435,6 @@ class Book:
     def title(self, sheet: Any, what: str) -> None:
         """Write the title of a sheet."""
         sheet.write(0, 0, f"{self.model.description.name}: {what}", self.style["title"])
-
-    def group_heads(self, sheet: Any, groups: Iterable[tuple[str, int, int]]) -> None:
-        """Write titles above groups of columns, from the first to the last column."""
-        for title, first, last in groups:
-            if first == last:
-                sheet.write(FIRST - 3, first, title, self.style["group"])
-            else:
-                sheet.merge_range(FIRST - 3, first, FIRST - 3, last, title, self.style["group"])
-
-    def row_numbers(self, sheet: Any) -> None:
-        """Write the column of row numbers."""
-        self.head(sheet, 0, "row", "")
-        for k in range(self.count):
-            sheet.write_number(FIRST + k, 0, k + 1, self.style["count"])
-
-    def put(
-        self, sheet: Any, k: int, column: int, formula: str, look: str, value: float | str
-    ) -> None:
-        """Write a formula in the row of position k, with its value, unless that is not known."""
-        if not isinstance(value, str):
-            known = math.isfinite(value) or self.iterations.found[k]
-            value = cached(value) if known else NO_VALUE
-        sheet.write_formula(FIRST + k, column, formula, self.style[look], value)
-
-    def column(self, sheet: Any, column: int, formula: Node, look: str) -> Array:
-        """Write a formula in all rows; returns its values (R,)."""
-        values = self.over_rows(value_of(formula, self.values))
-        if not any(True for _ in names_in(formula)):
-            for k, value in enumerate(values.tolist()):
-                sheet.write_number(FIRST + k, column, value, self.style[look])
-            return values
-        shown = self.text(formula)
-        for k, value in enumerate(values.tolist()):
-            self.put(sheet, k, column, shown, look, value)
-        return values
 
     def over_rows(self, values: Any) -> np.ndarray[Any, Any]:
         """Values as an array (R,)."""

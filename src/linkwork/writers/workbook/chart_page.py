@@ -12,7 +12,7 @@ from linkwork.core.equations.writing import EquationSheet
 from linkwork.core.foundation.statuses import Certification
 from linkwork.core.results.quantity import Kind
 from linkwork.writers.workbook.book import CYCLE, FIRST, Book, chart_text, column_name
-from linkwork.writers.workbook.cycle_page import CycleColumns, statement
+from linkwork.writers.workbook.cycle_page import statement
 from linkwork.writers.workbook.layout import PRINTED, print_on_one_page, print_table
 from linkwork.writers.workbook.load_cells import force_problem
 
@@ -149,7 +149,7 @@ _ABOUT_PAGE_WIDTH = 110  # characters per line of equations
 _LINE, _LINE_LENGTH = 15.0, 95  # height of a text line, and its characters
 
 
-def write_about(book: Book, sheet: Any, columns: CycleColumns, version: str) -> None:
+def write_about(book: Book, sheet: Any, columns: dict[str, int], version: str) -> None:
     """Write title, instructions, parts that do not recalculate, Linkwork's evidence, equations."""
     style, description = book.style, book.model.description
     sheet.hide_gridlines(2)
@@ -209,23 +209,23 @@ def _facts(book: Book, version: str) -> Iterator[tuple[str, str]]:
     yield "Iterations in every row", str(book.iterations.count)
 
 
-def _checks(book: Book, sheet: Any, columns: CycleColumns, row: int) -> int:
+def _checks(book: Book, sheet: Any, columns: dict[str, int], row: int) -> int:
     """Checks of the cells, as formulas."""
     style = book.style
     rows = f"{FIRST + 1}", f"{book.last}"
 
-    def whole(column: int) -> str:
-        letter = column_name(column)
+    def whole(key: str) -> str:
+        letter = column_name(columns[key])
         return f"{CYCLE}!{letter}{rows[0]}:{letter}{rows[1]}"
 
     solved = int(book.iterations.found.sum())
     lines: list[tuple[str, str, float, str]] = []
     if solved:
-        largest = f"=MAX({whole(columns.largest)})"
+        largest = f'=MAX({whole("difference")})'
         lines.append(("Largest relative difference", largest, 0.0, "result"))
-    closing = f'=COUNTIF({whole(columns.closes)},"yes")'
+    closing = f'=COUNTIF({whole("closes")},"yes")'
     lines.append(("Rows with a position", closing, solved, "result_count"))
-    proved = f'=COUNTIF({whole(columns.status)},"proved for*")'
+    proved = f'=COUNTIF({whole("status")},"proved for*")'
     certified = sum(statement(book, int(k)).startswith("proved for") for k in book.iterations.rows)
     lines.append(("Rows still proved", proved, certified, "result_count"))
     lines.append(("Changed cells", "=changes", 0, "result_count"))

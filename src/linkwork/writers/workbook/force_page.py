@@ -13,14 +13,13 @@ from linkwork.core.expression.tree import Name, Node, names_in
 from linkwork.core.foundation.names import GROUND, canonical
 from linkwork.core.results.quantity import Kind
 from linkwork.forces.reactions.drives import effort_kind, effort_name
-from linkwork.writers.formulas.closure_formulas import of_radians, value_of
+from linkwork.writers.formulas.closure_formulas import of_radians
 from linkwork.writers.formulas.rate_formulas import rate_key
-from linkwork.writers.workbook.book import FIRST, FORCES, Book, column_name
-from linkwork.writers.workbook.layout import print_table
+from linkwork.writers.workbook.book import FORCES, Book
+from linkwork.writers.workbook.layout import Table
 from linkwork.writers.workbook.load_cells import LoadCells
 from linkwork.writers.workbook.rates import partial_key
 
-_WIDTH = 14
 _SPINS = ((1, "ω", "rad/s"), (2, "α", "rad/s²"))
 _SPAN = "((x1-x0)^2+(y1-y0)^2)"
 
@@ -40,30 +39,23 @@ class ForceColumns:
 
 def write_forces(book: Book, sheet: Any, cells: LoadCells) -> ForceColumns:
     """Write the columns; ``Equilibrium`` takes them from there."""
-    page = _Page(book, sheet, cells)
+    page = _Page(book, Table(book, FORCES, sheet), cells)
     page.write()
+    page.columns.of = page.table.of
     return page.columns
 
 
 @dataclass
 class _Page:
     book: Book
-    sheet: Any
+    table: Table
     cells: LoadCells
     columns: ForceColumns = field(default_factory=ForceColumns)
-    groups: list[tuple[str, int, int]] = field(default_factory=list)
-    end: int = 1
     work: list[str] = field(default_factory=list)
 
     def write(self) -> None:
         """Write directions, masses, loads and springs, then the sum of virtual work."""
-        book, sheet = self.book, self.sheet
-        book.title(sheet, "forces")
-        book.row_numbers(sheet)
-        for variable in book.model.equations.inputs:
-            book.head(sheet, self.end, book.shown(variable), book.unit(variable.kind))
-            book.column(sheet, self.end, Name(variable.symbol), "number")
-            self.end += 1
+        self.table.inputs()
         linkage = self.cells.linkage
         turned = [load.turns_with for load in linkage.loads if load.turns_with]
         loaded = [load.link for load in linkage.loads if load.torque is not None and load.link]
@@ -82,10 +74,7 @@ class _Page:
         whole = "effort = -Σ (force · velocity + torque · angular velocity) / speed of the input"
         alone = "effort = -Σ (force · rate + torque · angular rate by this input alone)"
         note = f"{alone if self.each else whole}, with the forces of inertia"
-        sheet.write(1, 0, note, book.style["note"])
-        book.group_heads(sheet, self.groups)
-        print_table(sheet, [6, *[_WIDTH] * (self.end - 1)], 2, book.last - 1)
-        sheet.freeze_panes(FIRST, 2)
+        self.table.finish("forces", note, 2)
 
     def _add(self, key: str, title: str, unit: str, text: str, names: Mapping[str, str]) -> str:
         """A column of a formula; ``names`` are the keys of its names."""
@@ -94,22 +83,8 @@ class _Page:
     def _column(
         self, key: str, title: str, unit: str, formula: Node, names: Mapping[str, str]
     ) -> str:
-        book = self.book
-        book.names.claim(key, key.replace(" ", "_"))
-        book.define(key, FORCES, f"${column_name(self.end)}1")
-        book.head(self.sheet, self.end, title, unit)
-        cells = {name: book.names.cells[key_of] for name, key_of in names.items()}
-        values = value_of(formula, {**book.values, **{n: book.values[k] for n, k in names.items()}})
-        values = book.over_rows(values)
-        shown = book.text(formula, **cells)
-        for k, value in enumerate(values.tolist()):
-            if any(True for _ in names_in(formula)):
-                book.put(self.sheet, k, self.end, shown, "number", value)
-            else:
-                self.sheet.write_number(FIRST + k, self.end, value, book.style["number"])
-        book.values[key] = values
-        self.columns.of[key] = self.end
-        self.end += 1
+        self.book.names.claim(key, key.replace(" ", "_"))
+        self.table.formula(title, unit, formula, key=key, names=names)
         return key
 
     def _moving(self, key: str, title: str, unit: str, text: str, names: Mapping[str, str]) -> None:
@@ -160,7 +135,7 @@ class _Page:
     def _turning(self, link: str) -> None:
         """The direction of a link and its rates."""
         first, *others = self.cells.linkage.links[link]
-        start = self.end
+        self.table.group = f"Direction of {link}"
         if others:
             names = {**self._place(first, "0"), **self._place(others[0], "1")}
             for axis in "xy":
@@ -174,7 +149,6 @@ class _Page:
                 add(f"{link} spin {order}", word, per, text, {**names, **directions, **rates})
         else:
             self._turning_wheel(link)
-        self.groups.append((f"Direction of {link}", start, self.end - 1))
 
     def _turning_wheel(self, link: str) -> None:
         """The direction of a link with one point: that of its angle, if it turns."""
@@ -193,7 +167,8 @@ class _Page:
         """Weight and inertia of a link, and their virtual work."""
         linkage = self.cells.linkage
         first = linkage.links[link][0]
-        start, length, force = self.end, linkage.length, linkage.force
+        self.table.group = f"Mass of {link}"
+        length, force = linkage.length, linkage.force
         names = {
             "ux": f"{link} direction x", "uy": f"{link} direction y",
             "w": f"{link} spin 1", "al": f"{link} spin 2", "m": f"mass {link}",
@@ -232,11 +207,10 @@ class _Page:
         self.work += [f"{link} force {axis}*{link} speed {axis}" for axis in "xy"]
         self.work.append(f"{link} torque*{link} spin 1")
         self.columns.masses.append(link)
-        self.groups.append((f"Mass of {link}", start, self.end - 1))
 
     def _load(self, k: int, load: Any, parts: tuple[Node, ...], names: Mapping[str, str]) -> None:
-        linkage, start = self.cells.linkage, self.end
-        cells = dict(names)
+        linkage, cells = self.cells.linkage, dict(names)
+        self.table.group = load.label.capitalize()
         if any(node.name == "t" for part in parts for node in names_in(part)):
             cells["t"] = self._time()
         if load.torque is not None:
@@ -261,7 +235,6 @@ class _Page:
                     for axis, text in (("x", "fx*ux-fy*uy"), ("y", "fx*uy+fy*ux"))
                 ]
             self._push(load.point, load.link, keys[0], keys[1])
-        self.groups.append((load.label.capitalize(), start, self.end - 1))
 
     def _part(
         self, key: str, title: str, unit: str, part: Node, names: Mapping[str, str], n: int
@@ -274,7 +247,7 @@ class _Page:
 
     def _time(self) -> str:
         """The time since the first row of the table."""
-        if "time" not in self.columns.of:
+        if "time" not in self.table.of:
             lead = self.book.leading
             scale = "*pi/180" if lead.kind == "angle" and self.book.unit("angle") == "deg" else ""
             begin = float(self.book.values[lead.symbol][0])
@@ -293,7 +266,8 @@ class _Page:
                 self.work.append(f"{key}*{rate}")
 
     def _spring(self, name: str, first: str, second: str) -> None:
-        start, linkage = self.end, self.cells.linkage
+        linkage = self.cells.linkage
+        self.table.group = f"Spring {name}"
         names = {**self._place(first, "0"), **self._place(second, "1")}
         length = self._add(f"{name} length", "length", linkage.length, f"sqrt({_SPAN})", names)
         text = "((x1-x0)*(bx-ax)+(y1-y0)*(by-ay))/l"
@@ -314,11 +288,11 @@ class _Page:
                 for axis in "xy"
             ]  # fmt: skip
             self._push(point, None, keys[0], keys[1])
-        self.groups.append((f"Spring {name}", start, self.end - 1))
 
     def _torsion(self, name: str, first: str, second: str) -> None:
         """The torque of a torsion spring on two links, by the angle between them."""
-        start, linkage = self.end, self.cells.linkage
+        linkage = self.cells.linkage
+        self.table.group = f"Spring {name}"
         links = {"a": first, "b": second}
         symbols = {word: canonical(link) for word, link in links.items() if link != GROUND}
         between = "-".join(word if word in symbols else "0" for word in "ba")
@@ -337,11 +311,10 @@ class _Page:
             self._add(key, f"on {links[word]}", unit, text, {**names, "on": "moving"})
             self.columns.torques.append((links[word], key))
             self.work.append(f"{key}*{speeds[word]}")
-        self.groups.append((f"Spring {name}", start, self.end - 1))
 
     def _effort(self) -> None:
         """The sum of virtual work over the speed of the input."""
-        start = self.end
+        self.table.group = "Virtual work"
         for which in self.book.model.equations.inputs:
             names: dict[str, str] = {}
             terms = []
@@ -358,4 +331,3 @@ class _Page:
             key = f"effort {which.symbol}"
             self.columns.efforts[key] = effort_name(which.name)
             self._add(key, effort_name(which.name), unit, text, names)
-        self.groups.append(("Virtual work", start, self.end - 1))
