@@ -221,7 +221,7 @@ def _checks(book: Book, sheet: Any, columns: dict[str, int], row: int) -> int:
     solved = int(book.iterations.found.sum())
     lines: list[tuple[str, str, float, str]] = []
     if solved:
-        largest = f'=MAX({whole("difference")})'
+        largest = f"=MAX({whole('difference')})"
         lines.append(("Largest relative difference", largest, 0.0, "result"))
     closing = f'=COUNTIF({whole("closes")},"yes")'
     lines.append(("Rows with a position", closing, solved, "result_count"))

@@ -9,11 +9,11 @@ from typing import Any
 from linkwork.core.equations.compiling import coordinate_name
 from linkwork.core.equations.model import Variable
 from linkwork.core.expression.grammar import parse
-from linkwork.core.expression.tree import Name, Node, names_in
+from linkwork.core.expression.tree import Name, Node, NumberNode, names_in
 from linkwork.core.foundation.names import GROUND, canonical
 from linkwork.core.results.quantity import Kind
 from linkwork.forces.reactions.drives import effort_kind, effort_name
-from linkwork.writers.formulas.closure_formulas import of_radians
+from linkwork.writers.formulas.closure_formulas import of_radians, rebuilt
 from linkwork.writers.formulas.rate_formulas import rate_key
 from linkwork.writers.workbook.book import FORCES, Book
 from linkwork.writers.workbook.layout import Table
@@ -51,7 +51,7 @@ class _Page:
     table: Table
     cells: LoadCells
     columns: ForceColumns = field(default_factory=ForceColumns)
-    work: list[str] = field(default_factory=list)
+    work: list[tuple[str, str]] = field(default_factory=list)
 
     def write(self) -> None:
         """Write directions, masses, loads and springs, then the sum of virtual work."""
@@ -77,14 +77,20 @@ class _Page:
         self.table.finish("forces", note, 2)
 
     def _add(self, key: str, title: str, unit: str, text: str, names: Mapping[str, str]) -> str:
-        """A column of a formula; ``names`` are the keys of its names."""
+        """A column of a formula; ``names`` are the keys of its names, 0 if they have no cells."""
         return self._column(key, title, unit, parse(text, comparing=True), names)
 
     def _column(
         self, key: str, title: str, unit: str, formula: Node, names: Mapping[str, str]
     ) -> str:
+        known = {name: used for name, used in names.items() if used in self.book.values}
+        still = names.keys() - known.keys()
+
+        def at_rest(part: Node) -> Node:
+            return NumberNode(0.0) if isinstance(part, Name) and part.name in still else part
+
         self.book.names.claim(key, key.replace(" ", "_"))
-        self.table.formula(title, unit, formula, key=key, names=names)
+        self.table.formula(title, unit, rebuilt(formula, at_rest), key=key, names=known)
         return key
 
     def _moving(self, key: str, title: str, unit: str, text: str, names: Mapping[str, str]) -> None:
@@ -92,9 +98,17 @@ class _Page:
         self._add(key, title, unit, text, names)
         for which in self.each:
             names_by = {name: self._by(used, which) for name, used in names.items()}
-            self._add(
-                partial_key(key, which), f"{title} by {self.book.shown(which)}", "", text, names_by
-            )
+            title_by = f"{title} by {self.book.shown(which)}"
+            self._add(partial_key(key, which), title_by, "", text, names_by)
+
+    def _pair(
+        self, key: str, title: str, unit: str, texts: tuple[str, str], names: Mapping[str, str]
+    ) -> list[str]:
+        """Columns of the x and y components of a vector."""
+        return [
+            self._add(f"{key} {axis}", f"{title} {axis}", unit, text, names)
+            for axis, text in zip("xy", texts, strict=True)
+        ]
 
     def _by(self, key: str, which: Variable) -> str:
         """The key of a rate by one input alone; other keys stay."""
@@ -107,61 +121,44 @@ class _Page:
         inputs = self.book.model.equations.inputs
         return inputs if len(inputs) > 1 else ()
 
-    def _rates(self, point: str, order: int, stem: str) -> tuple[dict[str, str], dict[str, str]]:
-        """Names for the rates of a point that have cells, and "0" for the rest."""
-        rates, still = {}, {}
-        for axis in "xy":
-            key = rate_key(coordinate_name(point, axis), order)
-            if key in self.book.values:
-                rates[f"{stem}{axis}"] = key
-            else:
-                still[f"{stem}{axis}"] = "0"
-        return rates, still
+    @staticmethod
+    def _rates(point: str, order: int, stem: str) -> dict[str, str]:
+        """The keys of the rates of a point, for the names ``stem`` x and y."""
+        return {f"{stem}{axis}": rate_key(coordinate_name(point, axis), order) for axis in "xy"}
 
-    def _formula(self, text: str, *points: tuple[str, int, str]) -> tuple[str, dict[str, str]]:
-        """A formula of rates of points, zeros written as 0."""
-        names: dict[str, str] = {}
-        for point, order, stem in points:
-            rates, still = self._rates(point, order, stem)
-            names |= rates
-            # points at rest have no cells of rates
-            for name, zero in still.items():
-                text = text.replace(name, zero)
-        return text, names
+    @staticmethod
+    def _ends(first: str, second: str) -> dict[str, str]:
+        """The keys of the coordinates of two points: ``x0``, ``y0``, ``x1``, ``y1``."""
+        ends = (("0", first), ("1", second))
+        return {f"{axis}{k}": coordinate_name(point, axis) for k, point in ends for axis in "xy"}
 
-    def _place(self, point: str, number: str) -> dict[str, str]:
-        return {f"{axis}{number}": coordinate_name(point, axis) for axis in "xy"}
+    @staticmethod
+    def _direction(link: str) -> dict[str, str]:
+        return {f"u{axis}": f"{link} direction {axis}" for axis in "xy"}
 
     def _turning(self, link: str) -> None:
         """The direction of a link and its rates."""
         first, *others = self.cells.linkage.links[link]
         self.table.group = f"Direction of {link}"
+        key = f"{link} direction"
         if others:
-            names = {**self._place(first, "0"), **self._place(others[0], "1")}
-            for axis in "xy":
-                text = f"({axis}1-{axis}0)/sqrt({_SPAN})"
-                self._add(f"{link} direction {axis}", f"direction {axis}", "", text, names)
-            directions = {f"u{axis}": f"{link} direction {axis}" for axis in "xy"}
-            for order, word, per in _SPINS:
-                text = f"(ux*(by-ay)-uy*(bx-ax))/sqrt({_SPAN})"
-                text, rates = self._formula(text, (first, order, "a"), (others[0], order, "b"))
-                add = self._moving if order == 1 else self._add
-                add(f"{link} spin {order}", word, per, text, {**names, **directions, **rates})
-        else:
-            self._turning_wheel(link)
-
-    def _turning_wheel(self, link: str) -> None:
-        """The direction of a link with one point: that of its angle, if it turns."""
-        symbol = canonical(link)
-        names = {"q": symbol} if symbol in self.book.values else {}
-        for axis, turned, still in (("x", "cos(q)", "1"), ("y", "sin(q)", "0")):
-            formula = of_radians(parse(turned if names else still), self.cells.linkage.angle)
-            self._column(f"{link} direction {axis}", f"direction {axis}", "", formula, names)
+            names = self._ends(first, others[0])
+            along = f"(x1-x0)/sqrt({_SPAN})", f"(y1-y0)/sqrt({_SPAN})"
+            self._pair(key, "direction", "", along, names)
+            names |= self._direction(link)
+        else:  # that of its angle, if it turns
+            for axis, text in (("x", "cos(q)"), ("y", "sin(q)")):
+                formula = of_radians(parse(text), self.cells.linkage.angle)
+                names = {"q": canonical(link)}
+                self._column(f"{key} {axis}", f"direction {axis}", "", formula, names)
         for order, word, per in _SPINS:
-            key = rate_key(symbol, order)
-            angle = {"q": key} if key in self.book.values else {}
+            if others:
+                text = f"(ux*(by-ay)-uy*(bx-ax))/sqrt({_SPAN})"
+                names |= self._rates(first, order, "a") | self._rates(others[0], order, "b")
+            else:
+                text, names = "q", {"q": rate_key(canonical(link), order)}
             add = self._moving if order == 1 else self._add
-            add(f"{link} spin {order}", word, per, "q" if angle else "0", angle)
+            add(f"{link} spin {order}", word, per, text, names)
 
     def _mass(self, link: str) -> None:
         """Weight and inertia of a link, and their virtual work."""
@@ -170,42 +167,30 @@ class _Page:
         self.table.group = f"Mass of {link}"
         length, force = linkage.length, linkage.force
         names = {
-            "ux": f"{link} direction x", "uy": f"{link} direction y",
+            **self._direction(link), **self._ends(first, linkage.links[link][-1]),
             "w": f"{link} spin 1", "al": f"{link} spin 2", "m": f"mass {link}",
             "k": "force unit", "on": "moving", "gx": "gravity x", "gy": "gravity y",
+            "cx": f"center {link} x", "cy": f"center {link} y", "j": f"inertia {link}",
+            **self._rates(first, 1, "v"), **self._rates(first, 2, "s"),
         }  # fmt: skip
+        inertia = "j"
         if linkage.masses[link].shape is not None:
-            second = linkage.links[link][1]
-            ends = {**self._place(first, "0"), **self._place(second, "1")}
-            self._add(f"{link} half", "half length", length, f"sqrt({_SPAN})/2", ends)
-            names["cx"] = f"{link} half"
-            cx, cy, inertia = "cx", "0", "m*cx^2/3"
-        else:
-            names |= {f"c{axis}": f"center {link} {axis}" for axis in "xy"}
-            names["j"] = f"inertia {link}"
-            cx, cy, inertia = "cx", "cy", "j"
-        arm = {"x": f"({cx}*ux-{cy}*uy)", "y": f"({cx}*uy+{cy}*ux)"}
-        origin = self._place(first, "0")
-        for axis in "xy":
-            text = f"{axis}0+{arm[axis]}"
-            self._add(f"{link} center {axis}", f"center {axis}", length, text, {**names, **origin})
-        speeds = {"x": f"vx-w*{arm['y']}", "y": f"vy+w*{arm['x']}"}
-        bends = {
-            "x": f"sx-al*{arm['y']}-w^2*{arm['x']}", "y": f"sy+al*{arm['x']}-w^2*{arm['y']}",
-        }  # fmt: skip
+            ends = self._ends(first, linkage.links[link][1])
+            half = self._add(f"{link} half", "half length", length, f"sqrt({_SPAN})/2", ends)
+            names |= {"cx": half, "cy": "", "j": ""}
+            inertia = "m*cx^2/3"
+        x, y = "(cx*ux-cy*uy)", "(cx*uy+cy*ux)"
         # v = v₀ + iω r and a = a₀ + (iα - ω²) r, r the arm from the first point
-        for axis in "xy":
-            text, rates = self._formula(speeds[axis], (first, 1, "v"))
-            key = f"{link} speed {axis}"
-            self._moving(key, f"velocity {axis}", f"{length}/s", text, {**names, **rates})
-        for axis in "xy":
-            text = f"k*m*(g{axis}-on*({bends[axis]}))"
-            text, rates = self._formula(text, (first, 2, "s"))
-            self._add(f"{link} force {axis}", f"force {axis}", force, text, {**names, **rates})
+        self._pair(f"{link} center", "center", length, (f"x0+{x}", f"y0+{y}"), names)
+        for axis, text in (("x", f"vx-w*{y}"), ("y", f"vy+w*{x}")):
+            self._moving(f"{link} speed {axis}", f"velocity {axis}", f"{length}/s", text, names)
+        bends = f"sx-al*{y}-w^2*{x}", f"sy+al*{x}-w^2*{y}"
+        pull = f"k*m*(gx-on*({bends[0]}))", f"k*m*(gy-on*({bends[1]}))"
+        self._pair(f"{link} force", "force", force, pull, names)
         torque = f"-k*on*({inertia})*al"
         self._add(f"{link} torque", "torque", f"{force}·{length}", torque, names)
-        self.work += [f"{link} force {axis}*{link} speed {axis}" for axis in "xy"]
-        self.work.append(f"{link} torque*{link} spin 1")
+        self.work += [(f"{link} force {axis}", f"{link} speed {axis}") for axis in "xy"]
+        self.work.append((f"{link} torque", f"{link} spin 1"))
         self.columns.masses.append(link)
 
     def _load(self, k: int, load: Any, parts: tuple[Node, ...], names: Mapping[str, str]) -> None:
@@ -218,7 +203,7 @@ class _Page:
                 f"load {k}", "torque", f"{linkage.force}·{linkage.length}", parts[0], cells, 1
             )
             self.columns.torques.append((load.link, key))
-            self.work.append(f"{key}*{load.link} spin 1")
+            self.work.append((key, f"{load.link} spin 1"))
         else:
             keys = [
                 self._part(f"load {k} force {axis}", f"force {axis}", linkage.force, part, cells, n)
@@ -226,14 +211,9 @@ class _Page:
             ]
             if load.turns_with is not None:
                 link = load.turns_with
-                along = {"ux": f"{link} direction x", "uy": f"{link} direction y"}
-                along |= {"fx": keys[0], "fy": keys[1]}
-                keys = [
-                    self._add(
-                        f"load {k} turned {axis}", f"on ground {axis}", linkage.force, text, along
-                    )
-                    for axis, text in (("x", "fx*ux-fy*uy"), ("y", "fx*uy+fy*ux"))
-                ]
+                along = {**self._direction(link), "fx": keys[0], "fy": keys[1]}
+                texts = "fx*ux-fy*uy", "fx*uy+fy*ux"
+                keys = self._pair(f"load {k} turned", "on ground", linkage.force, texts, along)
             self._push(load.point, load.link, keys[0], keys[1])
 
     def _part(
@@ -263,30 +243,23 @@ class _Page:
         for axis, key in (("x", x), ("y", y)):
             rate = rate_key(coordinate_name(point, axis), 1)
             if rate in self.book.values:
-                self.work.append(f"{key}*{rate}")
+                self.work.append((key, rate))
 
     def _spring(self, name: str, first: str, second: str) -> None:
         linkage = self.cells.linkage
         self.table.group = f"Spring {name}"
-        names = {**self._place(first, "0"), **self._place(second, "1")}
-        length = self._add(f"{name} length", "length", linkage.length, f"sqrt({_SPAN})", names)
+        names = self._ends(first, second)
+        names |= self._rates(first, 1, "a") | self._rates(second, 1, "b")
+        names |= {word: f"{name} {word}" for word in ("stiffness", "free", "damping")}
+        names |= {"l": f"{name} length", "r": f"{name} rate", "on": "moving"}
+        self._add(f"{name} length", "length", linkage.length, f"sqrt({_SPAN})", names)
         text = "((x1-x0)*(bx-ax)+(y1-y0)*(by-ay))/l"
-        text, rates = self._formula(text, (first, 1, "a"), (second, 1, "b"))
-        rate = self._add(
-            f"{name} rate", "rate", f"{linkage.length}/s", text, {**names, **rates, "l": length}
-        )
-        constants = {word: f"{name} {word}" for word in ("stiffness", "free", "damping")}
+        self._add(f"{name} rate", "rate", f"{linkage.length}/s", text, names)
         text = "stiffness*(l-free)+damping*on*r"
-        used = {**constants, "l": length, "r": rate, "on": "moving"}
-        tension = self._add(f"{name} tension", "tension", linkage.force, text, used)
+        names["f"] = self._add(f"{name} tension", "tension", linkage.force, text, names)
         for point, sign in ((first, ""), (second, "-")):
-            keys = [
-                self._add(
-                    f"{name} on {point} {axis}", f"on {point} {axis}", linkage.force,
-                    f"{sign}f*({axis}1-{axis}0)/l", {**names, "f": tension, "l": length},
-                )
-                for axis in "xy"
-            ]  # fmt: skip
+            texts = f"{sign}f*(x1-x0)/l", f"{sign}f*(y1-y0)/l"
+            keys = self._pair(f"{name} on {point}", f"on {point}", linkage.force, texts, names)
             self._push(point, None, keys[0], keys[1])
 
     def _torsion(self, name: str, first: str, second: str) -> None:
@@ -294,23 +267,22 @@ class _Page:
         linkage = self.cells.linkage
         self.table.group = f"Spring {name}"
         links = {"a": first, "b": second}
-        symbols = {word: canonical(link) for word, link in links.items() if link != GROUND}
-        between = "-".join(word if word in symbols else "0" for word in "ba")
         scale = "*pi/180" if linkage.angle.value == "deg" else ""
-        angles = {**symbols, "free": f"{name} free"}
-        self._add(f"{name} turn", "turn", "rad", f"({between}-free){scale}", angles)
-        speeds = {word: rate_key(symbol, 1) for word, symbol in symbols.items()}
-        self._add(f"{name} rate", "rate", "rad/s", between, speeds)
-        names = {word: f"{name} {word}" for word in ("stiffness", "damping", "turn", "rate")}
-        unit = f"{linkage.force}·{linkage.length}"
+        angles = {word: canonical(link) for word, link in links.items()}
+        names = {
+            word: f"{name} {word}" for word in ("stiffness", "free", "damping", "turn", "rate")
+        }
+        names["on"] = "moving"
+        self._add(f"{name} turn", "turn", "rad", f"(b-a-free){scale}", {**names, **angles})
+        speeds = {word: rate_key(symbol, 1) for word, symbol in angles.items()}
+        self._add(f"{name} rate", "rate", "rad/s", "b-a", speeds)
         for word, sign in (("a", ""), ("b", "-")):
-            if word not in symbols:
-                continue
-            text = f"{sign}(stiffness*turn+damping*on*rate)"
-            key = f"{name} on {links[word]}"
-            self._add(key, f"on {links[word]}", unit, text, {**names, "on": "moving"})
-            self.columns.torques.append((links[word], key))
-            self.work.append(f"{key}*{speeds[word]}")
+            if links[word] != GROUND:
+                text = f"{sign}(stiffness*turn+damping*on*rate)"
+                unit = f"{linkage.force}·{linkage.length}"
+                key = self._add(f"{name} on {links[word]}", f"on {links[word]}", unit, text, names)
+                self.columns.torques.append((links[word], key))
+                self.work.append((key, speeds[word]))
 
     def _effort(self) -> None:
         """The sum of virtual work over the speed of the input."""
@@ -318,8 +290,7 @@ class _Page:
         for which in self.book.model.equations.inputs:
             names: dict[str, str] = {}
             terms = []
-            for k, term in enumerate(self.work):
-                load, _, moved = term.partition("*")
+            for k, (load, moved) in enumerate(self.work):
                 names |= {f"f{k}": load, f"v{k}": self._by(moved, which)}
                 terms.append(f"f{k}*v{k}")
             # eq. (71), for one input both sides times its speed; "by input" the speed is 1
