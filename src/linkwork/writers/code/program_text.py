@@ -328,7 +328,7 @@ class ProgramText:
         counts = {
             "n": len(equations.unknowns),
             "m": len(equations.inputs),
-            "derived": len(program.derived),
+            "derived": len(program.closure.quantities),
             "rate": len(self._with_rates),
             "block": len(program.blocks),
             "largest": max((len(b.formulas.unknowns) for b in program.blocks), default=1),
@@ -378,22 +378,24 @@ class ProgramText:
 
     @cached_property
     def _with_rates(self) -> list[int]:
-        return [k for k, d in enumerate(self.program.derived) if d.rates is not None]
+        rates, quantities = self.program.rates.of, self.program.closure.quantities
+        return [k for k, quantity in enumerate(quantities) if quantity.key in rates]
 
     def _columns(self) -> list[str]:
         program, equations = self.program, self.program.model.equations
         shown = [equations.unknowns[k].name for k in self._shown]
-        moving = [*shown, *(program.derived[k].title for k in self._with_rates)]
+        derived = [quantity.shown for quantity in program.closure.quantities]
+        moving = [*shown, *(derived[k] for k in self._with_rates)]
         return [
             *(v.name for v in equations.inputs),
             *shown,
-            *(d.title for d in program.derived),
+            *derived,
             *(f"{title}.d{order}" for title in moving for order in (1, 2)),
         ]
 
     def _results(self) -> Iterator[dict[str, str]]:
         """The identifiers of all columns but inputs, and their places in arrays."""
-        derived, unknowns = self.program.derived, self.program.model.equations.unknowns
+        derived, unknowns = self.program.closure.quantities, self.program.model.equations.unknowns
         symbols = {k: unknowns[k].symbol for k in self._shown}
         places = [(symbol, ("q", k)) for k, symbol in symbols.items()]
         places += [(part.key, ("v", k)) for k, part in enumerate(derived)]
@@ -462,21 +464,20 @@ class ProgramText:
     def _derived(self) -> Statements:
         """Links that turn with others, points and outputs."""
         statements = self._statements()
-        for k, part in enumerate(self.program.derived):
+        for k, part in enumerate(self.program.closure.quantities):
             statements.let(self._names[part.key], statements.text(part.formula))
             statements.store(self.syntax.at("v", k), Name(part.key))
         return statements
 
     def _derived_rates(self) -> Statements:
         """First, then second derivatives of the quantities computed from the unknowns."""
-        derived = self.program.derived
+        derived, rates = self.program.closure.quantities, self.program.rates.of
         statements = self._statements(
             {part.key: self.syntax.at("v", k) for k, part in enumerate(derived)}
         )
         for order in (1, 2):
             for row, part in enumerate(derived[k] for k in self._with_rates):
-                assert part.rates is not None
                 key = rate_key(part.key, order)
-                statements.let(self._names[key], statements.text(part.rates[order - 1]))
+                statements.let(self._names[key], statements.text(rates[part.key][order - 1]))
                 statements.store(self.syntax.at(f"v{order}", row), Name(key))
         return statements

@@ -10,8 +10,6 @@ from functools import cached_property
 
 import numpy as np
 
-from linkwork.core.equations.compiling import coordinate_name
-from linkwork.core.expression.tree import Node
 from linkwork.core.foundation.arrays import Array
 from linkwork.core.foundation.errors import InputError
 from linkwork.core.foundation.names import canonical
@@ -76,16 +74,6 @@ class SolvedBlock:
 
 
 @dataclass(frozen=True, kw_only=True)
-class Derived:
-    """A number computed from the unknowns: its name in formulas, column, formula, derivatives."""
-
-    key: str
-    title: str
-    formula: Node
-    rates: Pair | None
-
-
-@dataclass(frozen=True, kw_only=True)
 class Stretch:
     """Rows of the table that lie on one branch: the first and the last one, and the unknowns of the
     first.
@@ -145,14 +133,14 @@ class SolverProgram:
         claim("program", self.name)
         for variable in variables:
             claim(variable.symbol, variable.name)
-        for link in self.closure.links:
+        for link in self.closure.links:  # before dimensions of their names
             claim(canonical(link), link)
         for dimension in self.dimensions:
             claim(dimension.key, dimension.name)
         for part in self.closure.coefficients.values():
             claim(part.key, part.wanted)
-        for derived in self.derived:
-            claim(derived.key, derived.title)
+        for quantity in self.closure.quantities:
+            claim(quantity.key, quantity.shown)
         for order in (1, 2):
             for key in (*(v.symbol for v in variables), *self.rates.of):
                 claim(rate_key(key, order), f"{self.names.of[key]}_d{order}")
@@ -219,18 +207,4 @@ class SolverProgram:
                 form.blocks, self.closure.blocks, self.rates.sides, strict=True
             )
             if block.unknowns
-        ]
-
-    @cached_property
-    def derived(self) -> list[Derived]:
-        """Links that turn with other links, points and outputs, each after its operands."""
-        closure = self.closure
-        named = [(canonical(link), link, formula) for link, formula in closure.links.items()]
-        for point, pair in closure.points.items():
-            for axis, formula in zip("xy", pair, strict=True):
-                named.append((coordinate_name(point, axis), f"{point}.{axis}", formula))
-        named += [(f"output {name}", name, formula) for name, formula in closure.outputs.items()]
-        return [
-            Derived(key=key, title=title, formula=formula, rates=self.rates.of.get(key))
-            for key, title, formula in named
         ]

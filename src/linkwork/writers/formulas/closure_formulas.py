@@ -30,6 +30,7 @@ from linkwork.core.foundation.names import canonical
 from linkwork.core.foundation.units import AngleUnit
 from linkwork.core.motion.model import Model
 from linkwork.core.results import quantities
+from linkwork.core.results.quantity import Kind
 from linkwork.writers.formulas.traced import (
     LinearForm,
     TracedEquations,
@@ -254,6 +255,20 @@ class BlockFormulas:
     reason: str = ""
 
 
+@dataclass(frozen=True, kw_only=True)
+class Quantity:
+    """A number computed from the unknowns: the angle of a link, a coordinate, or an output.
+
+    ``of`` is ``link``, ``point`` or ``output``; ``key`` its name in formulas.
+    """
+
+    of: str
+    key: str
+    shown: str
+    kind: Kind
+    formula: Node
+
+
 @dataclass
 class ClosureFormulas:
     """All formulas of a mechanism.
@@ -304,6 +319,24 @@ class ClosureFormulas:
     @property
     def _angle(self) -> AngleUnit:
         return self.model.equations.angle
+
+    @cached_property
+    def quantities(self) -> list[Quantity]:
+        """Links that turn with other links, points and outputs, each after its operands."""
+        found = [
+            Quantity(of="link", key=canonical(link), shown=link, kind=Kind.ANGLE, formula=formula)
+            for link, formula in self.links.items()
+        ]
+        for point, pair in self.points.items():
+            for axis, formula in zip("xy", pair, strict=True):
+                key, shown = coordinate_name(point, axis), f"{point}.{axis}"
+                found.append(
+                    Quantity(of="point", key=key, shown=shown, kind=Kind.LENGTH, formula=formula)
+                )
+        for name, formula in self.outputs.items():
+            kind, key = Kind(self.model.equations.outputs[name].kind), f"output {name}"
+            found.append(Quantity(of="output", key=key, shown=name, kind=kind, formula=formula))
+        return found
 
     # Coefficients
 

@@ -10,10 +10,8 @@ from collections.abc import Iterator, Mapping, Set
 from dataclasses import dataclass, field
 from functools import cached_property
 
-from linkwork.core.equations.compiling import coordinate_name
 from linkwork.core.equations.model import Term
 from linkwork.core.expression.tree import Binary, Call, Name, Negative, Node, NumberNode, names_in
-from linkwork.core.foundation.names import canonical
 from linkwork.core.results.quantity import Kind
 from linkwork.writers.formulas.closure_formulas import ClosureFormulas, NoFormula, rate_of
 from linkwork.writers.formulas.traced import LinearForm, TracedEquations, forms_of
@@ -53,13 +51,15 @@ class RateFormulas:
                 self.sides.append(tuple(self._pair(row.formula, held) for row in block.rows))
             except NoFormula:
                 self.sides.append(())
-        for key, formula, kind in self._quantities():
-            unit = closure.model.units.scale(kind) if kind is Kind.ANGLE else 1.0
+        for quantity in closure.quantities:
+            key = quantity.key
+            turns = quantity.kind is Kind.ANGLE
+            unit = closure.model.units.scale(Kind.ANGLE) if turns else 1.0
             try:
-                pair = self._pair(formula, unit=unit)
+                pair = self._pair(quantity.formula, unit=unit)
             except NoFormula:
                 continue
-            if key.startswith("output ") or any(part != NumberNode(0.0) for part in pair):
+            if quantity.of == "output" or any(part != NumberNode(0.0) for part in pair):
                 self.of[key] = pair  # else it is at rest
                 self._rates[key] = self._named(key, 1, LinearForm(1.0 / unit))
                 self._bends[rate_key(key, 1)] = self._named(key, 2)
@@ -67,17 +67,6 @@ class RateFormulas:
     @staticmethod
     def _named(key: str, order: int, weight: LinearForm | float = 1.0) -> LinearForm:
         return LinearForm.named(rate_key(key, order)) * weight
-
-    def _quantities(self) -> Iterator[tuple[str, Node, Kind]]:
-        """Key, formula and kind of links, points and outputs."""
-        closure = self.closure
-        for link, formula in closure.links.items():
-            yield canonical(link), formula, Kind.ANGLE
-        for point, pair in closure.points.items():
-            for axis, formula in zip("xy", pair, strict=True):
-                yield coordinate_name(point, axis), formula, Kind.LENGTH
-        for name, formula in closure.outputs.items():
-            yield f"output {name}", formula, Kind(closure.model.equations.outputs[name].kind)
 
     def _pair(self, node: Node, held: Set[str] = frozenset(), unit: float = 1.0) -> Pair:
         """Velocity and acceleration without those rates of one order that are ``held``."""
@@ -94,9 +83,9 @@ class RateFormulas:
         """All formulas of the mechanism."""
         closure = self.closure
         yield from (part.formula for part in closure.coefficients.values())
-        yield from (*closure.links.values(), *closure.outputs.values())
+        yield from (quantity.formula for quantity in closure.quantities)
         yield from (length for _, length in closure.released)
-        for pair in (*closure.points.values(), *self.of.values()):
+        for pair in self.of.values():
             yield from pair
         for block, sides in zip(closure.blocks, self.sides, strict=True):
             for pair in sides:

@@ -4,14 +4,12 @@ from __future__ import annotations
 
 import math
 import re
-from collections.abc import Iterator
 from dataclasses import dataclass, field
 from functools import cache, cached_property
 from typing import Any
 
 import numpy as np
 
-from linkwork.core.equations.compiling import coordinate_name
 from linkwork.core.equations.model import Variable
 from linkwork.core.expression.tree import Node
 from linkwork.core.foundation.arrays import AnyArray, Array, BoolArray, IndexArray
@@ -317,32 +315,16 @@ class Book:
         for variable in self.model.equations.inputs:  # known in rows without a position, too
             series = self.motion.inputs[variable.name]
             self.values[variable.symbol] = series[self.iterations.rows]
-        for link in self.closure.links:
-            self.names.claim(canonical(link), f"theta_{link}")
-        for point in self.closure.points:
-            for axis in "xy":
-                self.names.claim(coordinate_name(point, axis), f"{point}.{axis}")
+        for quantity in self.closure.quantities:
+            before = "theta_" if quantity.of == "link" else ""
+            self.names.claim(quantity.key, f"{before}{quantity.shown}")
         for part in self.closure.coefficients.values():
             self.names.claim(part.key, part.wanted)
             self.values[part.key] = float(value_of(part.formula, self.values))
-        for name in self.closure.outputs:
-            self.names.claim(f"output {name}", name)
         for order, word in ((1, "velocity"), (2, "acceleration")):
             for key in (*(v.symbol for v in self.model.equations.unknowns), *self.rates.of):
                 stem = self.names.cells[key].rstrip("_")
                 self.names.claim(rate_key(key, order), f"{stem}.{word}")
-
-    def quantities(self) -> Iterator[tuple[str, str, Kind, Node]]:
-        """Key, shown name, kind and formula of links, points and outputs, after their operands."""
-        closure = self.closure
-        for link, formula in closure.links.items():
-            yield canonical(link), link, Kind.ANGLE, formula
-        for point, pair in closure.points.items():
-            for axis, formula in zip("xy", pair, strict=True):
-                yield coordinate_name(point, axis), f"{point}.{axis}", Kind.LENGTH, formula
-        for name, formula in closure.outputs.items():
-            kind = Kind(self.model.equations.outputs[name].kind)
-            yield f"output {name}", name, kind, formula
 
     @property
     def variables(self) -> tuple[Variable, ...]:

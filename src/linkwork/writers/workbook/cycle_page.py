@@ -11,7 +11,6 @@ import numpy as np
 
 from linkwork.core.equations.model import Variable
 from linkwork.core.foundation.statuses import Certification
-from linkwork.core.results.quantity import Kind
 from linkwork.writers.formulas.closure_formulas import cell_number, cell_text
 from linkwork.writers.workbook.book import CYCLE, FIRST, LINKWORK, NEWTON, Book, apart, column_name
 from linkwork.writers.workbook.dimension_page import input_table
@@ -176,6 +175,9 @@ def statement(book: Book, row: int) -> str:
 # The sheet of positions: a row for every value of the input.
 
 
+_GROUPS = {
+    "link": "Links that turn with another link", "point": "Points", "output": "Outputs",
+}  # fmt: skip
 _STATUS = 60  # the largest width of the column of statuses
 
 
@@ -200,11 +202,10 @@ class _Page:
         self._unknowns()
         self._equations()
         # each from preceding ones
-        for key, shown, kind, formula in book.quantities():
-            table.group = "Outputs" if key.startswith("output ") else "Points"
-            if kind is Kind.ANGLE and table.group == "Points":
-                table.group = "Links that turn with another link"
-            table.formula(shown, book.model.units.of(kind), formula, key=key)
+        for quantity in book.closure.quantities:
+            table.group = _GROUPS[quantity.of]
+            unit = book.model.units.of(quantity.kind)
+            table.formula(quantity.shown, unit, quantity.formula, key=quantity.key)
         said = [statement(book, int(row)) for row in book.iterations.rows]
         self._check(said)
         note = (

@@ -102,7 +102,8 @@ class _Page:
             self._trace(chart, point)
         self.sheet.write(self.bottom - 1, 0, "lines of the picture", book.style["heading"])
         for line in self._lines():
-            self._line(chart, line)
+            if sum(point in self.place for point in line.points) > 1:
+                self._placed(chart, line.name, line.points, line.look)
         for circle in book.model_circles:
             self._circle(chart, *circle)
         self._ground(chart)
@@ -139,60 +140,59 @@ class _Page:
             look = {"line": {"color": "#5f6c7b", "width": 4.5}}
             yield _Line(strut.name, strut.between, look)
 
-    def _line(self, chart: Any, line: _Line) -> None:
-        known = [point for point in line.points if point in self.place]
-        if len(known) < 2:
-            return
-        self._placed(chart, line.name, known, {"name": line.name, **line.look})
-
     def _placed(self, chart: Any, name: str, points: Sequence[str], look: dict[str, Any]) -> None:
-        """A curve through points, listed below each other."""
-        if not points:
+        """A curve through those of the points that are on the sheet."""
+        known = [point for point in points if point in self.place]
+        corners = [[(f"={self._cell(p, k)}", self._value(p, k)) for k in (0, 1)] for p in known]
+        self._curve(chart, name, corners, look)
+
+    def _cell(self, point: str, k: int) -> str:
+        """The cell of a coordinate of a point."""
+        return f"{column_name(k + 1)}{self.place[point] + 1}"
+
+    def _value(self, point: str, k: int) -> float:
+        key = coordinate_name(point, "xy"[k])
+        return float(self.book.over_rows(self.book.values[key])[self.shown])
+
+    def _curve(
+        self, chart: Any, name: str, corners: list[list[tuple[str, float]]], look: dict[str, Any]
+    ) -> None:
+        """A curve through points given by formulas and values, listed below each other."""
+        if not corners:
             return
         first = self.bottom
-        for point in points:
+        for corner in corners:
             self.sheet.write(self.bottom, 0, name)
-            for column, axis in enumerate("xy", 1):
-                values = self.book.over_rows(self.book.values[coordinate_name(point, axis)])
-                formula = f"={column_name(column)}{self.place[point] + 1}"
-                look_of = self.book.style["number"]
-                value = cached(float(values[self.shown]))
-                self.sheet.write_formula(self.bottom, column, formula, look_of, value)
+            for column, (formula, value) in enumerate(corner, 1):
+                at = self.bottom, column
+                number = self.book.style["number"]
+                self.sheet.write_formula(*at, formula, number, cached(value))
             self.bottom += 1
-        self._series(chart, SHEET, (first, self.bottom - 1), (1, 2), look)
+        self._series(chart, SHEET, (first, self.bottom - 1), (1, 2), {"name": name, **look})
         self.bottom += 1
 
     def _circle(self, chart: Any, name: str, center: str, radius: float) -> None:
         """The rim of a wheel, by points about its centre."""
-        first = self.bottom
-        x, y = (
-            self.book.over_rows(self.book.values[coordinate_name(center, axis)])[self.shown]
-            for axis in "xy"
-        )
-        for k in range(_ROUND + 1):
-            angle = 360 * k // _ROUND
-            self.sheet.write(self.bottom, 0, name)
+        corners = []
+        for angle in range(0, 361, 360 // _ROUND):
             turned = math.cos(math.radians(angle)), math.sin(math.radians(angle))
-            for column, function, coordinate, part in zip(
-                (1, 2), ("COS", "SIN"), (x, y), turned, strict=True
-            ):
-                origin = f"{column_name(column)}{self.place[center] + 1}"
-                formula = f"={origin}+{radius!r}*{function}(RADIANS({angle}))"
-                value = cached(float(coordinate) + radius * part)
-                look_of = self.book.style["number"]
-                self.sheet.write_formula(self.bottom, column, formula, look_of, value)
-            self.bottom += 1
-        look = {"line": {"color": "#7b8794", "width": 1.25}, "name": name}
-        self._series(chart, SHEET, (first, self.bottom - 1), (1, 2), look)
-        self.bottom += 1
+            corners.append(
+                [
+                    (
+                        f"={self._cell(center, k)}+{radius!r}*{function}(RADIANS({angle}))",
+                        self._value(center, k) + radius * turned[k],
+                    )
+                    for k, function in enumerate(("COS", "SIN"))
+                ]
+            )
+        self._curve(chart, name, corners, {"line": {"color": "#7b8794", "width": 1.25}})
 
     def _ground(self, chart: Any) -> None:
         """The fixed points as dark squares."""
-        known = [p for p in self.book.model.skeleton.fixed if p in self.place]
         dark = {"color": "#1f2933"}
         marker = {"type": "square", "size": 8, "fill": dark, "border": dark}
-        look = {"name": "ground", "line": {"none": True}, "marker": marker}
-        self._placed(chart, "ground", known, look)
+        look = {"line": {"none": True}, "marker": marker}
+        self._placed(chart, "ground", self.book.model.skeleton.fixed, look)
 
     def _trace(self, chart: Any, point: str) -> None:
         columns = tuple(self.columns[coordinate_name(point, axis)] for axis in "xy")

@@ -90,9 +90,11 @@ class _Rates:
                 text = self._text(b, c, first, variable)
                 table.cells(column, text, values, "number" if sides else "value")
         table.group = rates
-        for key, shown, kind, _ in book.quantities():
-            if key in book.rates.of and (self.by is None or not key.startswith("output ")):
-                self._formula(key, shown, kind, book.rates.of[key][self.order - 1])
+        for quantity in book.closure.quantities:
+            formulas = book.rates.of.get(quantity.key)
+            if formulas and (self.by is None or quantity.of != "output"):
+                formula = formulas[self.order - 1]
+                self._formula(quantity.key, quantity.shown, quantity.kind, formula)
 
     def _unit(self, kind: Kind) -> str:
         rate = Rate.VELOCITY if self.order == 1 else Rate.ACCELERATION
