@@ -36,12 +36,8 @@ _C_WORDS = """
 """
 # Macros of the headers, also those beyond the standard that compilers add by default.
 _MACROS = """
-    bufsiz eof filename_max fopen_max fp_fast_fma fp_fast_fmaf fp_fast_fmal fp_ilogb0 fp_ilogbnan
-    fp_infinite fp_nan fp_normal fp_subnormal fp_zero fpclassify huge_val huge_valf huge_vall
-    isfinite isgreater isgreaterequal isinf isless islessequal islessgreater isnan isnormal
-    isunordered l_ctermid l_tmpnam linux m_1_pi m_2_pi m_2_sqrtpi m_e m_ln10 m_ln2 m_log10e
-    m_log2e m_pi m_pi_2 m_pi_4 m_sqrt1_2 m_sqrt2 math_errexcept math_errhandling math_errno
-    p_tmpdir seek_cur seek_end seek_set signbit stderr stdin stdout tmp_max unix
+    bufsiz eof huge_val isfinite isgreater isinf isless isnan isnormal linux m_e m_pi signbit stderr
+    stdin stdout unix
 """
 C = Syntax(
     language="C99",

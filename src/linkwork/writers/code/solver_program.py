@@ -15,7 +15,7 @@ from linkwork.core.foundation.errors import InputError
 from linkwork.core.foundation.names import canonical
 from linkwork.core.motion.model import Model, leading_input
 from linkwork.core.results.motion import Motion
-from linkwork.writers.formulas.closure_formulas import BlockFormulas, ClosureFormulas
+from linkwork.writers.formulas.closure_formulas import BlockFormulas, ClosureFormulas, UniqueNames
 from linkwork.writers.formulas.rate_formulas import Pair, RateFormulas, rate_key
 from linkwork.writers.formulas.traced import Dimension, traced
 
@@ -23,9 +23,8 @@ _ODD = re.compile(r"[^A-Za-z0-9]+")
 _IDENTIFIERS_LONGEST = 60
 
 
-@dataclass
-class Identifiers:
-    """Unique identifiers by key, which differ in more than upper and lower case.
+class Identifiers(UniqueNames):
+    """Identifiers by key.
 
     Parameters
     ----------
@@ -33,27 +32,20 @@ class Identifiers:
         Words that are taken, in lower case.
     """
 
-    reserved: Set[str]
-    of: dict[str, str] = field(default_factory=dict)
-    _used: set[str] = field(default_factory=set)
+    def __init__(self, reserved: Set[str]) -> None:
+        super().__init__()
+        self.reserved = reserved
 
-    def claim(self, key: str, preferred: str) -> str:
-        """The identifier for ``key``, a new one as similar as possible to the preferred one."""
-        if key in self.of:
-            return self.of[key]
+    def is_taken(self, name: str) -> bool:
+        """Whether a name is used or a word of the language."""
+        return super().is_taken(name) or name.lower() in self.reserved
+
+    def stem(self, preferred: str) -> str:
+        """Letters without accents, digits and underscores, a letter first."""
         plain = unicodedata.normalize("NFKD", canonical(preferred).replace("'", "_prime"))
-        stem = _ODD.sub("_", plain.encode("ascii", "ignore").decode()).strip("_")[
-            :_IDENTIFIERS_LONGEST
-        ]
-        if not stem or not stem[0].isalpha():
-            stem = f"x_{stem}".rstrip("_")
-        name, count = stem, 1
-        while name.lower() in self._used or name.lower() in self.reserved:
-            count += 1
-            name = f"{stem}_{count}"
-        self._used.add(name.lower())
-        self.of[key] = name
-        return name
+        stem = _ODD.sub("_", plain.encode("ascii", "ignore").decode()).strip("_")
+        stem = stem[:_IDENTIFIERS_LONGEST]
+        return stem if stem[:1].isalpha() else f"x_{stem}".rstrip("_")
 
 
 # ----------------------------------------------------------------------

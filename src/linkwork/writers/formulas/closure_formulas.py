@@ -94,6 +94,34 @@ def value_of(node: Node, names: Mapping[str, Any]) -> Any:
 # Formulas as texts of spreadsheets and programs.
 
 
+class UniqueNames:
+    """Names by key, which differ in more than upper and lower case; ``of`` has them."""
+
+    def __init__(self) -> None:
+        self.of: dict[str, str] = {}
+        self._used: set[str] = set()
+
+    def stem(self, preferred: str) -> str:
+        """A preferred name in the characters that are allowed."""
+        raise NotImplementedError
+
+    def is_taken(self, name: str) -> bool:
+        """Whether a name means something else."""
+        return name.casefold() in self._used
+
+    def claim(self, key: str, preferred: str) -> str:
+        """The name for ``key``, a new one as similar as possible to the preferred one."""
+        if key not in self.of:
+            stem, count = self.stem(preferred), 1
+            name = stem
+            while self.is_taken(name):
+                count += 1
+                name = f"{stem.rstrip('_')}_{count}"
+            self._used.add(name.casefold())
+            self.of[key] = name
+        return self.of[key]
+
+
 @dataclass(frozen=True, kw_only=True)
 class Notation:
     """How formulas are written.

@@ -10,7 +10,6 @@ from collections.abc import Iterator, Mapping, Set
 from dataclasses import dataclass, field
 from functools import cached_property
 
-from linkwork.core.equations.model import Term
 from linkwork.core.expression.tree import Binary, Call, Name, Negative, Node, NumberNode, names_in
 from linkwork.core.results.quantity import Kind
 from linkwork.writers.formulas.closure_formulas import ClosureFormulas, NoFormula, rate_of
@@ -123,104 +122,77 @@ def dimension_kinds(traced: TracedEquations) -> dict[str, Kind]:
     argument of a sine is an angle. A factor of a product of dimensions is left open, and so is a
     dimension that is used as two kinds.
     """
-    kinds = _Kinds()
-    equations = traced.equations
-    for form, kind in _known_kinds(traced):
-        kinds.read(form, kind)
-    for line in equations.linear:
-        kind = Kind.ANGLE if line.kind == "angle" else Kind.LENGTH
-        kinds.read(forms_of(line.constant)[0].node, kind)
-    for angle in equations.links.values():
-        kinds.read(forms_of(angle.constant)[0].node, Kind.ANGLE)
-    for dimension in traced.dimensions:
-        if dimension.kind in _KINDS and dimension.formula is not None:
-            kinds.read(dimension.formula, _KINDS[dimension.kind])
-    for _ in traced.dimensions:  # a chain of derived dimensions is as long as their number
-        known = len(kinds.of)
-        for dimension in traced.dimensions:
-            if dimension.formula is None:
-                continue
-            dimension_kind = kinds.of.get(dimension.key) or kinds.kind_of(dimension.formula)
-            if dimension_kind is not None:
-                kinds.read(Name(dimension.key), dimension_kind)
-                kinds.read(dimension.formula, dimension_kind)
-        if len(kinds.of) == known:
-            break
-    return {key: kind for key, kind in kinds.of.items() if kind is not None}
+    kinds: dict[str, Kind | None] = {}  # None for a dimension used as two kinds
 
+    def read(node: Node, kind: Kind) -> None:
+        for name in _carriers(node):
+            if kinds.setdefault(name, kind) is not kind:
+                kinds[name] = None
+        for angle in _angles(node):
+            read(angle, Kind.ANGLE)
 
-def _known_kinds(traced: TracedEquations) -> Iterator[tuple[Node, Kind]]:
-    """The coefficients of all vectors with their kinds."""
     equations = traced.equations
-    terms: list[Term] = [term for loop in equations.loops for term in loop.terms]
+    terms = [term for loop in equations.loops for term in loop.terms]
     terms += [term for path in equations.points.values() for term in path.terms]
     for term in terms:
-        kind = Kind.LENGTH if term.length is None else Kind.NUMBER
         for form in forms_of(term.value):
-            yield form.node, kind
+            read(form.node, Kind.LENGTH if term.length is None else Kind.NUMBER)
+    for line in equations.linear:
+        kind = Kind.ANGLE if line.kind == "angle" else Kind.LENGTH
+        read(forms_of(line.constant)[0].node, kind)
+    for angle in equations.links.values():
+        read(forms_of(angle.constant)[0].node, Kind.ANGLE)
+    derived = [(d, d.formula) for d in traced.dimensions if d.formula is not None]
+    for dimension, formula in derived:
+        if dimension.kind in _KINDS:
+            read(formula, _KINDS[dimension.kind])
+    for _ in derived:  # a chain of derived dimensions is as long as their number
+        for dimension, formula in derived:
+            known = (kinds.get(name) for name in (dimension.key, *_carriers(formula)))
+            found = next((kind for kind in known if kind is not None), None)
+            if found is not None:
+                read(Name(dimension.key), found)
+                read(formula, found)
+    return {key: kind for key, kind in kinds.items() if kind is not None}
 
 
-@dataclass
-class _Kinds:
-    """The kinds read so far; ``None`` for a dimension used as two kinds."""
+def _carriers(node: Node) -> Iterator[str]:
+    """The names that have the kind of the formula."""
+    match node:
+        case Name():
+            yield node.name
+        case Negative():
+            yield from _carriers(node.operand)
+        case Binary("+" | "-"):
+            yield from _carriers(node.left)
+            yield from _carriers(node.right)
+        case Binary("*" | "/") if _is_plain(node.right):
+            yield from _carriers(node.left)
+        case Binary("*") if _is_plain(node.left):
+            yield from _carriers(node.right)
+        case Call() if node.function in _ALIKE:
+            for argument in node.arguments:
+                yield from _carriers(argument)
 
-    of: dict[str, Kind | None] = field(default_factory=dict)
 
-    def read(self, node: Node, kind: Kind) -> None:
-        """Derive the kinds of the parts of a formula from the kind of the formula."""
-        match node:
-            case Name():
-                known = self.of.setdefault(node.name, kind)
-                if known is not kind:
-                    self.of[node.name] = None
-            case Negative():
-                self.read(node.operand, kind)
-            case Binary("+" | "-"):
-                self.read(node.left, kind)
-                self.read(node.right, kind)
-            case Binary("*" | "/"):
-                self._product(node, kind)
-            case Call() if node.function in _OF_ANGLE:
-                self.read(node.arguments[0], Kind.ANGLE)
-            case Call() if node.function in _ALIKE:
-                for argument in node.arguments:
-                    self.read(argument, kind)
-            case Binary() | Call() | NumberNode():
-                return
-
-    def kind_of(self, node: Node) -> Kind | None:
-        """The kind of a formula of dimensions whose kinds are known."""
-        match node:
-            case Name():
-                return self.of.get(node.name)
-            case Negative():
-                return self.kind_of(node.operand)
-            case Binary("+" | "-"):
-                return self.kind_of(node.left) or self.kind_of(node.right)
-            case Binary("*" | "/") if _is_plain(node.right):
-                return self.kind_of(node.left)
-            case Binary("*") if _is_plain(node.left):
-                return self.kind_of(node.right)
-            case _:
-                return None
-
-    def _product(self, node: Binary, kind: Kind) -> None:
-        """A product: its only factor with a dimension has its kind."""
-        left, right = (not _is_plain(part) for part in (node.left, node.right))
-        for part in (node.left, node.right):
-            if _is_plain(part):
-                self.read(part, Kind.NUMBER)
-        if left and not right:
-            self.read(node.left, kind)
-        elif right and not left and node.operator == "*":
-            self.read(node.right, kind)
+def _angles(node: Node) -> Iterator[Node]:
+    """The arguments of functions of angles."""
+    match node:
+        case Negative():
+            yield from _angles(node.operand)
+        case Binary():
+            yield from _angles(node.left)
+            yield from _angles(node.right)
+        case Call() if node.function in _OF_ANGLE:
+            yield node.arguments[0]
+        case Call():
+            for argument in node.arguments:
+                yield from _angles(argument)
 
 
 def _is_plain(node: Node) -> bool:
-    """Whether a factor is a number: it has no dimensions, or they are in angles."""
+    """Whether a factor is a number: all its dimensions are in angles."""
     match node:
-        case NumberNode():
-            return True
         case Call() if node.function in ("sin", "cos", "tan"):
             return True
         case Negative():

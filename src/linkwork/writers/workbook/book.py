@@ -19,7 +19,12 @@ from linkwork.core.motion.model import Model, leading_input
 from linkwork.core.numerics.newton import corrections
 from linkwork.core.results.motion import Motion
 from linkwork.core.results.quantity import Kind
-from linkwork.writers.formulas.closure_formulas import ClosureFormulas, cell_text, value_of
+from linkwork.writers.formulas.closure_formulas import (
+    ClosureFormulas,
+    UniqueNames,
+    cell_text,
+    value_of,
+)
 from linkwork.writers.formulas.rate_formulas import RateFormulas, rate_key
 from linkwork.writers.formulas.traced import Dimension, TracedEquations
 
@@ -37,27 +42,15 @@ def chart_text(text: str) -> str:
     return text.replace("!", "!\u2060")
 
 
-@dataclass
-class CellNames:
-    """Unique valid names of cells; spreadsheets ignore case."""
+class CellNames(UniqueNames):
+    """Valid names of cells by key."""
 
-    cells: dict[str, str] = field(default_factory=dict)
-    _used: set[str] = field(default_factory=set)
-
-    def claim(self, key: str, preferred: str) -> str:
-        """A cell name for ``key``, as similar as possible to the preferred one."""
+    def stem(self, preferred: str) -> str:
+        """Letters, digits, underscores and points, no digit first, and no address of a cell."""
         stem = _ODD.sub("_", canonical(preferred).replace("'", "_prime"))[:_LONGEST]
         if not (stem[0].isalpha() or stem[0] == "_"):
             stem = f"_{stem}"
-        if _TAKEN.fullmatch(stem):
-            stem += "_"
-        name, count = stem, 1
-        while name.casefold() in self._used:
-            count += 1
-            name = f"{stem.rstrip('_')}_{count}"
-        self._used.add(name.casefold())
-        self.cells[key] = name
-        return name
+        return f"{stem}_" if _TAKEN.fullmatch(stem) else stem
 
 
 # ----------------------------------------------------------------------
@@ -323,7 +316,7 @@ class Book:
             self.values[part.key] = float(value_of(part.formula, self.values))
         for order, word in ((1, "velocity"), (2, "acceleration")):
             for key in (*(v.symbol for v in self.model.equations.unknowns), *self.rates.of):
-                stem = self.names.cells[key].rstrip("_")
+                stem = self.names.of[key].rstrip("_")
                 self.names.claim(rate_key(key, order), f"{stem}.{word}")
 
     @property
@@ -399,7 +392,7 @@ class Book:
 
     def text(self, formula: Node, **instead: str) -> str:
         """The text of a formula in a cell."""
-        return "=" + cell_text(formula, {**self.names.cells, **instead})
+        return "=" + cell_text(formula, {**self.names.of, **instead})
 
     def shown(self, variable: Variable) -> str:
         """The name of a variable in headings."""
@@ -407,7 +400,7 @@ class Book:
 
     def define(self, key: str, sheet: str, place: str) -> None:
         """Define the name of a cell; ``$B1`` is column B of the row of the formula."""
-        self.workbook.define_name(self.names.cells[key], f"={sheet}!{place}")
+        self.workbook.define_name(self.names.of[key], f"={sheet}!{place}")
 
     def head(self, sheet: Any, column: int, title: str, unit: str) -> None:
         """Write a heading with unit above the rows of positions."""

@@ -174,39 +174,36 @@ def write_about(book: Book, sheet: Any, columns: dict[str, int], version: str) -
     print_on_one_page(sheet, tall=1 if row < _ONE_PAGE else 0)
 
 
-def _facts(book: Book, version: str) -> Iterator[tuple[str, str]]:
+def _facts(book: Book, version: str) -> list[tuple[str, str]]:
     description, count = book.model.description, book.count
-    yield (
-        "How to use it",
-        (
-            "Edit a yellow cell of the sheet Dimensions: the formulas of the sheet Newton solve "
-            "all rows of Cycle again, and Velocities follows. Drawing shows the row whose number "
-            "you enter there."
-        ),
-    )
-    if description.source:
-        yield "Source", description.source
-    yield "Written by", f"Linkwork {version}; the sheet Linkwork contains its results"
-    unit = book.unit("angle")
-    yield "Units", f"lengths in {description.length}, angles in {unit}, counter-clockwise"
-    yield (
-        "Names",
-        (
-            "A name that looks like a cell gets an underscore: a2 becomes a2_. Names of unknowns "
-            "and points refer to the row of the formula."
-        ),
-    )
-    yield "Rows", f"{count} values of the input, {int(book.iterations.found.sum())} with a position"
     statuses = ", ".join(f"{s.name} {n}" for s, n in book.motion.counts.items())
     proved = sum(c is Certification.CERTIFIED for c in book.motion.certification)
-    yield (
-        "By Linkwork",
-        (
-            f"{statuses}; {proved} of {len(book.motion)} rows proved, for the dimensions and "
-            "inputs of the file. The lines below and the statuses of Cycle follow the cells."
-        ),
+    source = [("Source", description.source)] if description.source else []
+    use = (
+        "Edit a yellow cell of the sheet Dimensions: the formulas of the sheet Newton solve all "
+        "rows of Cycle again, and Velocities follows. Drawing shows the row whose number you enter "
+        "there."
     )
-    yield "Iterations in every row", str(book.iterations.count)
+    units = f"in {description.length}, angles in {book.unit('angle')}, counter-clockwise"
+    names = (
+        "A name that looks like a cell gets an underscore: a2 becomes a2_. Names of unknowns and "
+        "points refer to the row of the formula."
+    )
+    solved = int(book.iterations.found.sum())
+    evidence = (
+        f"{statuses}; {proved} of {len(book.motion)} rows proved, for the dimensions and inputs of "
+        "the file. The lines below and the statuses of Cycle follow the cells."
+    )
+    return [
+        ("How to use it", use),
+        *source,
+        ("Written by", f"Linkwork {version}; the sheet Linkwork contains its results"),
+        ("Units", f"lengths {units}"),
+        ("Names", names),
+        ("Rows", f"{count} values of the input, {solved} with a position"),
+        ("By Linkwork", evidence),
+        ("Iterations in every row", str(book.iterations.count)),
+    ]
 
 
 def _checks(book: Book, sheet: Any, columns: dict[str, int], row: int) -> int:

@@ -150,9 +150,9 @@ class StatusFormulas:
             variable = next(
                 v for v in book.model.equations.unknowns if v.name == redundant.variable
             )
-            released = cell_text(formula, book.names.cells)
+            released = cell_text(formula, book.names.of)
             near = cell_number(float(f"{_CELL_AGREES * book.model.equations.length_scale:.1e}"))
-            fits = f"ABS({book.names.cells[variable.symbol]}-({released}))<={near}"
+            fits = f"ABS({book.names.of[variable.symbol]}-({released}))<={near}"
             link = redundant.link[:_LONGEST].replace('"', "'")
             text = f'IF({fits},{text},"redundant link {link} does not fit")'
         return text
@@ -224,7 +224,7 @@ class _Page:
             values = book.motion.inputs[variable.name][book.iterations.rows]
             # an even table is first + step·k in cells, so that both can be changed
             even = input_table(values) is not None
-            first, step = (book.names.cells.get(f"{word} {symbol}") for word in ("from", "step"))
+            first, step = (book.names.of.get(f"{word} {symbol}") for word in ("from", "step"))
             for k, value in enumerate(values):
                 at = FIRST + k, column
                 if even:

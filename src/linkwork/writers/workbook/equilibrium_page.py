@@ -50,7 +50,7 @@ class _Page:
         units = self.book.model.units
         self.length, force = units.of(Kind.LENGTH), units.of(Kind.FORCE)
         self.sums = tuple(zip(_ROWS, (force, force, units.of(Kind.MOMENT)), strict=True))
-        self.trace, self.names = Trace(), dict(self.book.names.cells)
+        self.trace, self.names = Trace(), dict(self.book.names.of)
         self.at: dict[str, Any] = {}
         self.along: dict[str, Any] = {}
         self.way: dict[str, Any] = {}

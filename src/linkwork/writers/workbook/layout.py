@@ -149,7 +149,7 @@ class Table:
         column, book = self.end, self.book
         self.sheet.write(FIRST - 2, column, title, book.style[look])
         self.sheet.write(FIRST - 1, column, unit, book.style["unit"])
-        if key in book.names.cells:
+        if key in book.names.of:
             book.define(key, self.name, f"${column_name(column)}1")
         if self._groups and self._groups[-1][0] == self.group:
             self._groups[-1] = (self.group, self._groups[-1][1], column)
@@ -199,7 +199,7 @@ class Table:
         known = {name: book.values[of] for name, of in instead.items() if of in book.values}
         found = book.over_rows(value_of(formula, {**book.values, **known, **(values or {})}))
         if any(True for _ in names_in(formula)):
-            cells = {name: book.names.cells[of] for name, of in instead.items()}
+            cells = {name: book.names.of[of] for name, of in instead.items()}
             text = book.text(formula, **cells)
             self.cells(column, lambda k: text, found, look)
         else:

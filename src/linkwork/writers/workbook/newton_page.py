@@ -131,7 +131,7 @@ class _Block:
         column = self._iterate(0, i, variable)
         # the unknowns follow the inputs on the sheet of positions
         source = column_name(1 + len(book.model.equations.inputs) + i)
-        estimate = book.names.cells[f"start {variable.symbol}"]
+        estimate = book.names.of[f"start {variable.symbol}"]
         for k, value in enumerate(done.values[0][:, i].tolist()):
             if k <= first_live:
                 self.table.put(k, column, f"={estimate}", "start", value)
@@ -184,7 +184,7 @@ class _Block:
             letter = column_name(jacobian + n * n + c)
 
             def moved(row: int, form: str = form, old: str = old, letter: str = letter) -> str:
-                return form.format(book.names.cells[old], letter, FIRST + row + 1)
+                return form.format(book.names.of[old], letter, FIRST + row + 1)
 
             table.cells(new, moved, values[k + 1][:, i], "number")
 

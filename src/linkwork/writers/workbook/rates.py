@@ -106,8 +106,8 @@ class _Rates:
         if self.by is None:
             return key
         partial = self.names[key] = partial_key(key, self.by)
-        if partial not in book.names.cells:
-            stem = book.names.cells[quantity].rstrip("_")
+        if partial not in book.names.of:
+            stem = book.names.of[quantity].rstrip("_")
             book.names.claim(partial, f"{stem}.by.{self.by.shown}")
         return partial
 
@@ -136,7 +136,7 @@ class _Rates:
         """The formulas of an unknown's rate; ``side`` is the first column of right-hand sides."""
         book, newton = self.table.book, self.newton
         block, done = book.closure.blocks[b], book.iterations
-        speed = book.names.cells[rate_key(book.leading.symbol, 1)]
+        speed = book.names.of[rate_key(book.leading.symbol, 1)]
         power = "" if self.order == 1 else "^2"
         source = book.linkwork_columns.get(f"{variable.name}.d{self.order}", 0)
 
