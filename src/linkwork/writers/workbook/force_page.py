@@ -63,8 +63,8 @@ class _Page:
             self._turning(link)
         for link in self.cells.masses:
             self._mass(link)
-        for k, (load, parts, names) in enumerate(self.cells.loads, start=1):
-            self._load(k, load, parts, names)
+        for k, (load, parts) in enumerate(self.cells.loads, start=1):
+            self._load(k, load, parts)
         for spring in self.cells.pulling:
             if spring.links is None:
                 self._spring(spring.name, *spring.between)
@@ -193,21 +193,20 @@ class _Page:
         self.work.append((f"{link} torque", f"{link} spin 1"))
         self.columns.masses.append(link)
 
-    def _load(self, k: int, load: Any, parts: tuple[Node, ...], names: Mapping[str, str]) -> None:
-        linkage, cells = self.cells.linkage, dict(names)
+    def _load(self, k: int, load: Any, parts: tuple[Node, ...]) -> None:
+        linkage = self.cells.linkage
         self.table.group = load.label.capitalize()
-        if any(node.name == "t" for part in parts for node in names_in(part)):
-            cells["t"] = self._time()
+        if any(node.name == "time" for part in parts for node in names_in(part)):
+            self._time()
         if load.torque is not None:
-            key = self._part(
-                f"load {k}", "torque", f"{linkage.force}·{linkage.length}", parts[0], cells, 1
-            )
+            unit = f"{linkage.force}·{linkage.length}"
+            key = self._column(f"load {k}", "torque", unit, parts[0], {})
             self.columns.torques.append((load.link, key))
             self.work.append((key, f"{load.link} spin 1"))
         else:
             keys = [
-                self._part(f"load {k} force {axis}", f"force {axis}", linkage.force, part, cells, n)
-                for n, (axis, part) in enumerate(zip("xy", parts, strict=True), start=1)
+                self._column(f"load {k} force {axis}", f"force {axis}", linkage.force, part, {})
+                for axis, part in zip("xy", parts, strict=True)
             ]
             if load.turns_with is not None:
                 link = load.turns_with
@@ -216,16 +215,7 @@ class _Page:
                 keys = self._pair(f"load {k} turned", "on ground", linkage.force, texts, along)
             self._push(load.point, load.link, keys[0], keys[1])
 
-    def _part(
-        self, key: str, title: str, unit: str, part: Node, names: Mapping[str, str], n: int
-    ) -> str:
-        plain = isinstance(part, Name) and part.name == "q"
-        used = {"q": names[f"q {n}"]} if plain else {
-            node.name: names[node.name] for node in names_in(part) if node.name in names
-        }  # fmt: skip
-        return self._column(key, title, unit, part, used)
-
-    def _time(self) -> str:
+    def _time(self) -> None:
         """The time since the first row of the table."""
         if "time" not in self.table.of:
             lead = self.book.leading
@@ -234,7 +224,6 @@ class _Page:
             text = f"(q-({begin!r})){scale}/s"
             names = {"q": lead.symbol, "s": rate_key(lead.symbol, 1)}
             self._add("time", "t", "s", text, names)
-        return "time"
 
     def _push(self, point: str, link: str | None, x: str, y: str) -> None:
         """A force on a point, and its virtual work."""
