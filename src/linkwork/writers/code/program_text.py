@@ -266,7 +266,6 @@ class ProgramText:
             Lines of its first comment.
         """
         program, syntax, of = self.program, self.syntax, self.program.names.of
-        results = list(self._results())
         values = {
             **self._sizes(),
             **self._table(),
@@ -278,7 +277,7 @@ class ProgramText:
             "numbers": "\n".join(self._numbers()),
             "units": syntax.listed(program.units),
             "sizes": syntax.listed(program.sizes),
-            "result_names": ", ".join(result["result"] for result in results),
+            "result_names": ", ".join(name for _, name, _ in self._results),
         }
         goals = (
             {"goal": of[v.symbol], "place": syntax.at("goal", k)}
@@ -287,7 +286,7 @@ class ProgramText:
         repeated: dict[str, Iterable[Mapping[str, str]]] = {
             "block": [self._block(k, block) for k, block in enumerate(program.blocks)],
             "number": [{"number": of[key]} for key in self._shared],
-            "result": results,
+            "result": [{"result": name, "place": place} for _, name, place in self._results],
             "goal": goals,
         }
         return filled(syntax.text, values, repeated)
@@ -354,6 +353,7 @@ class ProgramText:
         program, syntax = self.program, self.syntax
         equations, stretches, at = program.model.equations, program.stretches, syntax.first
         names = [program.names.of[v.symbol] for v in equations.inputs]
+        titles = [*(v.name for v in equations.inputs), *(title for title, _, _ in self._results)]
         first = stretches[0].first if stretches else 0
         start = stretches[0].unknowns if stretches else (0.0,) * len(equations.unknowns)
         starts = ((float(s.first + at), float(s.last + at), *s.unknowns) for s in stretches)
@@ -365,7 +365,7 @@ class ProgramText:
             "first_inputs": syntax.listed(program.inputs[first].tolist()),
             "input_names": ", ".join(names),
             "table_call": ", ".join(f"{name} := table[row, {k}]" for k, name in enumerate(names)),
-            "column_names": ", ".join(map(syntax.string.format, self._columns())),
+            "column_names": ", ".join(map(syntax.string.format, titles)),
             "shown": syntax.listed(k + at for k in self._shown),
             "largest_misfit": syntax.number(_FITS * equations.length_scale),
         }
@@ -381,30 +381,22 @@ class ProgramText:
         rates, quantities = self.program.rates.of, self.program.closure.quantities
         return [k for k, quantity in enumerate(quantities) if quantity.key in rates]
 
-    def _columns(self) -> list[str]:
-        program, equations = self.program, self.program.model.equations
-        shown = [equations.unknowns[k].name for k in self._shown]
-        derived = [quantity.shown for quantity in program.closure.quantities]
-        moving = [*shown, *(derived[k] for k in self._with_rates)]
-        return [
-            *(v.name for v in equations.inputs),
-            *shown,
-            *derived,
-            *(f"{title}.d{order}" for title in moving for order in (1, 2)),
-        ]
-
-    def _results(self) -> Iterator[dict[str, str]]:
-        """The identifiers of all columns but inputs, and their places in arrays."""
-        derived, unknowns = self.program.closure.quantities, self.program.model.equations.unknowns
-        symbols = {k: unknowns[k].symbol for k in self._shown}
-        places = [(symbol, ("q", k)) for k, symbol in symbols.items()]
-        places += [(part.key, ("v", k)) for k, part in enumerate(derived)]
-        for order in (1, 2):
-            places += [(rate_key(s, order), (f"d{order}", k)) for k, s in symbols.items()]
-            for row, k in enumerate(self._with_rates):
-                places.append((rate_key(derived[k].key, order), (f"v{order}", row)))
-        for key, place in places:
-            yield {"result": self.program.names.of[key], "place": self.syntax.at(*place)}
+    @cached_property
+    def _results(self) -> list[tuple[str, str, str]]:
+        """Title, identifier and place in an array of all columns but inputs."""
+        unknowns, of = self.program.model.equations.unknowns, self.program.names.of
+        derived, at = self.program.closure.quantities, self.syntax.at
+        shown = [(unknowns[k].name, unknowns[k].symbol, k) for k in self._shown]
+        results = [(name, of[symbol], at("q", k)) for name, symbol, k in shown]
+        results += [(part.shown, of[part.key], at("v", k)) for k, part in enumerate(derived)]
+        moving = [(name, symbol, "d", k) for name, symbol, k in shown]
+        for row, k in enumerate(self._with_rates):
+            moving.append((derived[k].shown, derived[k].key, "v", row))
+        for name, key, array, k in moving:
+            for order in (1, 2):
+                place = at(f"{array}{order}", k)
+                results.append((f"{name}.d{order}", of[rate_key(key, order)], place))
+        return results
 
     def _numbers(self) -> Iterator[str]:
         """Dimensions, coefficients and rates of the inputs as constants."""

@@ -15,6 +15,7 @@ from linkwork.core.foundation.errors import InputError
 from linkwork.core.foundation.names import canonical
 from linkwork.core.motion.model import Model, leading_input
 from linkwork.core.results.motion import Motion
+from linkwork.core.results.quantity import Kind
 from linkwork.writers.formulas.closure_formulas import BlockFormulas, ClosureFormulas, UniqueNames
 from linkwork.writers.formulas.rate_formulas import Pair, RateFormulas, rate_key
 from linkwork.writers.formulas.traced import Dimension, traced
@@ -147,8 +148,8 @@ class SolverProgram:
     @cached_property
     def units(self) -> tuple[float, ...]:
         """Internal units (radians, the file's length) per file unit of the unknowns."""
-        angle = self.model.equations.angle.radians
-        return tuple(angle if v.kind == "angle" else 1.0 for v in self.model.equations.unknowns)
+        units = self.model.units
+        return tuple(units.scale(Kind(v.kind)) for v in self.model.equations.unknowns)
 
     @cached_property
     def sizes(self) -> tuple[float, ...]:
@@ -167,8 +168,7 @@ class SolverProgram:
     @cached_property
     def input_rates(self) -> tuple[float, ...]:
         """Derivatives of the inputs with respect to the leading one."""
-        kinds = [v.kind == "angle" for v in self.model.equations.inputs]
-        scale = np.where(kinds, self.model.equations.angle.radians, 1.0)
+        scale = [self.model.units.scale(Kind(v.kind)) for v in self.model.equations.inputs]
         return tuple(float(x) for x in leading_input(self.inputs * scale)[1])
 
     @cached_property

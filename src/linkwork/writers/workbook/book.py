@@ -176,23 +176,23 @@ def iterated(model: Model, motion: Motion, closure: ClosureFormulas) -> Iteratio
     start, above = _rounded(model, right), np.full(len(rows), -1, dtype=np.intp)
     values = np.repeat(right[None], _MOST + 1, axis=0)
     live = np.zeros(len(rows), dtype=bool)
-    # each attempt takes the rows that the one before it could not recalculate
-    for attempt in ("above", "estimate", "value"):
-        trying = np.flatnonzero(solved & ~live & ((before >= 0) | (attempt != "above")))
-        if attempt == "above":
-            guess = right[before[trying]]
-        else:
-            guess = start[trying] if attempt == "estimate" else right[trying]
+
+    def attempt(trying: IndexArray, guess: Array) -> IndexArray:
+        """Try some rows from estimates; those whose cells converge to their positions."""
         tried = _newton(model, closure, guess, right[trying])
         away = np.abs((tried[-1] - right[trying]) * scale / _sizes(model)).max(axis=1, initial=0.0)
         good = away <= _RIGHT
         values[:, trying[good]] = tried[:, good]
         live[trying[good]] = True
-        if attempt == "above":
-            above[trying[good]] = before[trying[good]]
-        # the cells of such a row hold the solution
-        elif attempt == "value":
-            values[:, trying[~good]] = right[trying[~good]]
+        return trying[good]
+
+    # each attempt takes the rows that the one before it could not recalculate
+    behind = np.flatnonzero(solved & (before >= 0))
+    converged = attempt(behind, right[before[behind]])
+    above[converged] = before[converged]
+    for estimates in (start, right):
+        lost = np.flatnonzero(solved & ~live)
+        attempt(lost, estimates[lost])
     needed = _needed(model, values[:, live])
     return Iterations(
         rows=rows,

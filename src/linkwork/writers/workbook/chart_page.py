@@ -13,7 +13,7 @@ from linkwork.core.foundation.statuses import Certification
 from linkwork.core.results.quantity import Kind
 from linkwork.writers.workbook.book import CYCLE, FIRST, Book, chart_text, column_name
 from linkwork.writers.workbook.cycle_page import statement
-from linkwork.writers.workbook.layout import PRINTED, print_on_one_page, print_table
+from linkwork.writers.workbook.layout import PRINTED, add_curve, print_on_one_page, print_table
 from linkwork.writers.workbook.load_cells import force_problem
 
 _CHART_PAGE_WIDTH, _HEIGHT, _ROWS = 1100, 400, 21
@@ -51,22 +51,10 @@ def _curves(book: Book, kind: Kind) -> list[tuple[str, str]]:
 
 def _chart(book: Book, kind: Kind, curves: list[tuple[str, str]], columns: dict[str, int]) -> Any:
     chart = book.workbook.add_chart({"type": "scatter", "subtype": "straight"})
-    leading = next(
-        (v for v in book.model.equations.inputs if _moves(book, v.name)),
-        book.model.equations.inputs[0],
-    )
-    x = columns[leading.symbol]
+    leading, rows = book.leading, (FIRST, book.last - 1)
     for key, name in curves:
-        column = columns[key]
-        chart.add_series(
-            {
-                "name": name,
-                "categories": [CYCLE, FIRST, x, book.last - 1, x],
-                "values": [CYCLE, FIRST, column, book.last - 1, column],
-                "line": {"width": 1.75},
-                "marker": {"type": "none"},
-            }
-        )
+        look = {"name": name, "line": {"width": 1.75}}
+        add_curve(chart, CYCLE, rows, (columns[leading.symbol], columns[key]), look)
     values = book.motion.inputs[leading.name][book.iterations.rows]
     grid = {"visible": True, "line": {"color": "#e4e7eb", "width": 0.5}}
     axis: dict[str, Any] = {
@@ -86,11 +74,6 @@ def _chart(book: Book, kind: Kind, curves: list[tuple[str, str]], columns: dict[
     chart.show_na_as_empty_cell()  # a gap where there is no position, not a line across
     chart.set_size({"width": _CHART_PAGE_WIDTH, "height": _HEIGHT})
     return chart
-
-
-def _moves(book: Book, name: str) -> bool:
-    values = book.motion.inputs[name]
-    return bool((values != values[0]).any())
 
 
 def _right_angles(span: float) -> float:

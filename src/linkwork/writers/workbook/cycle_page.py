@@ -44,6 +44,10 @@ class StatusFormulas:
     book: Book
     columns: dict[str, int]
 
+    def cell(self, key: str, k: int) -> str:
+        """The cell of a column in row k."""
+        return f"{column_name(self.columns[key])}{FIRST + k + 1}"
+
     def as_solved(self, k: int) -> str:
         """``yes`` while dimensions and input are those that Linkwork solved."""
         return f'IF(AND(changes=0,{self.same_input(k)}),"yes","no")'
@@ -52,11 +56,11 @@ class StatusFormulas:
         """Whether the input is the one that Linkwork solved."""
         parts = []
         for variable in self.book.model.equations.inputs:
-            letter = column_name(self.columns[variable.symbol])
+            cell = self.cell(variable.symbol, k)
             other = column_name(self.book.linkwork_columns[variable.name])
             size = float(abs(self.book.motion.inputs[variable.name]).max()) or 1.0
             near = cell_number(float(f"{_SAME_INPUT * size:.1e}"))
-            parts.append(f"ABS({letter}{FIRST + k + 1}-{LINKWORK}!{other}{self.source(k)})<={near}")
+            parts.append(f"ABS({cell}-{LINKWORK}!{other}{self.source(k)})<={near}")
         return ",".join(parts)
 
     def source(self, k: int) -> int:
@@ -94,28 +98,24 @@ class StatusFormulas:
 
     def closes(self, k: int) -> str:
         """``yes`` if the row has a position that fulfils the equations."""
-        row = FIRST + k + 1
-        unknowns = [self.columns[v.symbol] for v in self.book.model.equations.unknowns]
+        unknowns = [v.symbol for v in self.book.model.equations.unknowns]
         if not unknowns:
             return '"yes"'
-        every = f"SUM({column_name(unknowns[0])}{row}:{column_name(unknowns[-1])}{row})"
+        every = f"SUM({self.cell(unknowns[0], k)}:{self.cell(unknowns[-1], k)})"
         if "squares" not in self.columns:
             return f'IF(ISNUMBER({every}),"yes","NO")'
-        squares = f"{column_name(self.columns['squares'])}{row}"
+        squares = self.cell("squares", k)
         if not any(block.reason for block in self.book.closure.blocks):
             every = squares
         return f'IF(ISNUMBER({every}),IF({squares}<tolerance,"yes","NO"),"NO")'
 
     def status(self, k: int) -> str:
         """Linkwork's statement while it holds, otherwise that of the cells."""
-        row = FIRST + k + 1
         said = f"{LINKWORK}!{column_name(self.book.statements)}{self.source(k)}"
         holds = 'as_solved="yes"'
         if self.book.iterations.found[k]:
-            largest = f"{column_name(self.columns['difference'])}{row}"
-            holds = f"AND({holds},{largest}<={cell_number(_CELL_AGREES)})"
-        closes = f"{column_name(self.columns['closes'])}{row}"
-        solved = f'IF({closes}="yes",{self._converged},{self._lost(row)})'
+            holds = f"AND({holds},{self.cell('difference', k)}<={cell_number(_CELL_AGREES)})"
+        solved = f'IF({self.cell("closes", k)}="yes",{self._converged},{self._lost(k)})'
         stale = 'IF(unused_changes>0,"not solved: a changed cell is not used"'
         return f"IF({holds},{said},{stale},{solved}))"
 
@@ -125,13 +125,13 @@ class StatusFormulas:
         unknowns = self.book.model.equations.unknowns
         return [unknowns[k] for b in self.book.closure.blocks if b.reason for k in b.unknowns]
 
-    def _lost(self, row: int) -> str:
+    def _lost(self, k: int) -> str:
         """The status of a row that does not close after a change."""
         text = '"no convergence from the row above"'
         if not self._held:
             return text
         held = self._held[:_MOST_ARGUMENTS]
-        cells = ",".join(f"{column_name(self.columns[v.symbol])}{row}" for v in held)
+        cells = ",".join(self.cell(v.symbol, k) for v in held)
         stale = f'"{self._names} not recalculated for another input"'
         return f"IF(COUNT({cells})={len(held)},{text},{stale})"
 

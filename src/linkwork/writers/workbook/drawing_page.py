@@ -11,7 +11,7 @@ import numpy as np
 
 from linkwork.core.equations.compiling import coordinate_name
 from linkwork.writers.workbook.book import CYCLE, FIRST, Book, cached, chart_text, column_name
-from linkwork.writers.workbook.layout import print_on_one_page
+from linkwork.writers.workbook.layout import add_curve, print_on_one_page
 
 SHEET = "Drawing"
 _SIDE = 640  # size of the chart [pixels]
@@ -168,7 +168,7 @@ class _Page:
                 number = self.book.style["number"]
                 self.sheet.write_formula(*at, formula, number, cached(value))
             self.bottom += 1
-        self._series(chart, SHEET, (first, self.bottom - 1), (1, 2), {"name": name, **look})
+        add_curve(chart, SHEET, (first, self.bottom - 1), (1, 2), {"name": name, **look})
         self.bottom += 1
 
     def _circle(self, chart: Any, name: str, center: str, radius: float) -> None:
@@ -176,15 +176,11 @@ class _Page:
         corners = []
         for angle in range(0, 361, 360 // _ROUND):
             turned = math.cos(math.radians(angle)), math.sin(math.radians(angle))
-            corners.append(
-                [
-                    (
-                        f"={self._cell(center, k)}+{radius!r}*{function}(RADIANS({angle}))",
-                        self._value(center, k) + radius * turned[k],
-                    )
-                    for k, function in enumerate(("COS", "SIN"))
-                ]
-            )
+            corner = []
+            for k, function in enumerate(("COS", "SIN")):
+                formula = f"={self._cell(center, k)}+{radius!r}*{function}(RADIANS({angle}))"
+                corner.append((formula, self._value(center, k) + radius * turned[k]))
+            corners.append(corner)
         self._curve(chart, name, corners, {"line": {"color": "#7b8794", "width": 1.25}})
 
     def _ground(self, chart: Any) -> None:
@@ -197,25 +193,7 @@ class _Page:
     def _trace(self, chart: Any, point: str) -> None:
         columns = tuple(self.columns[coordinate_name(point, axis)] for axis in "xy")
         look = {"name": f"path of {point}", "line": {"color": "#d64545", "width": 1}}
-        self._series(chart, CYCLE, (FIRST, self.book.last - 1), columns, look)
-
-    def _series(
-        self,
-        chart: Any,
-        sheet: str,
-        rows: tuple[int, int],
-        columns: Sequence[int],
-        look: dict[str, Any],
-    ) -> None:
-        x, y = columns
-        chart.add_series(
-            {
-                "categories": [sheet, rows[0], x, rows[1], x],
-                "values": [sheet, rows[0], y, rows[1], y],
-                "marker": {"type": "none"},
-                **look,
-            }
-        )
+        add_curve(chart, CYCLE, (FIRST, self.book.last - 1), columns, look)
 
     def _box(self) -> tuple[float, float, float, float]:
         """A square around all rows: its corner, side and gridlines."""

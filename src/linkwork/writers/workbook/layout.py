@@ -86,6 +86,14 @@ def print_on_one_page(sheet: Any, *area: int, tall: int = 1) -> None:
     sheet.fit_to_pages(1, tall)
 
 
+def add_curve(
+    chart: Any, sheet: str, rows: tuple[int, int], columns: tuple[int, int], look: dict[str, Any]
+) -> None:
+    """Draw a curve through points in the rows from the first to the last, x and y in columns."""
+    x, y = ([sheet, rows[0], column, rows[1], column] for column in columns)
+    chart.add_series({"categories": x, "values": y, "marker": {"type": "none"}, **look})
+
+
 def print_table(sheet: Any, widths: Sequence[float], repeated: int, last: int) -> None:
     """Set the columns of a table of positions, to print on as few pages across as is readable.
 
