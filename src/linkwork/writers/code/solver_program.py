@@ -126,8 +126,9 @@ class SolverProgram:
         claim("program", self.name)
         for variable in variables:
             claim(variable.symbol, variable.name)
-        for link in self.closure.links:  # before dimensions of their names
-            claim(canonical(link), link)
+        for quantity in self.closure.quantities:
+            if quantity.of == "link":  # before dimensions of their names
+                claim(quantity.key, quantity.shown)
         for dimension in self.dimensions:
             claim(dimension.key, dimension.name)
         for part in self.closure.coefficients.values():

@@ -310,6 +310,12 @@ class ClosureFormulas:
         Of a block: the corrections of a larger one do not fit into one cell.
     longest : int
         Characters of a formula.
+
+    Notes
+    -----
+    ``quantities`` are links that turn with other links, points and outputs, each after its
+    operands; ``points`` the names of the points; ``released`` the stated lengths of redundant
+    links.
     """
 
     model: Model
@@ -318,53 +324,42 @@ class ClosureFormulas:
     longest: int = _OF_CELLS[1]
     coefficients: dict[Node, Coefficient] = field(default_factory=dict)
     blocks: list[BlockFormulas] = field(default_factory=list)
-    points: dict[str, tuple[Node, Node]] = field(default_factory=dict)
-    links: dict[str, Node] = field(default_factory=dict)
-    outputs: dict[str, Node] = field(default_factory=dict)
+    quantities: list[Quantity] = field(default_factory=list)
+    points: list[str] = field(default_factory=list)
     released: list[tuple[Redundant, Node]] = field(default_factory=list)
 
     def __post_init__(self) -> None:
-        self.variables = {v.symbol: v for v in self.model.equations.variables}
         self._units: dict[str, float] = {
-            v.symbol: self._angle.radians if v.kind == "angle" else 1.0
-            for v in self.variables.values()
+            v.symbol: self.model.units.scale(Kind(v.kind)) for v in self.model.equations.variables
         }
         for equations, unknowns in self.model.compiled.form.blocks:
             self.blocks.append(self._block(equations, unknowns))
         for redundant in self.traced.equations.redundant:
             length = self._coefficient(forms_of(redundant.length)[0], f"{redundant.variable}_given")
             self.released.append((redundant, length.node))
+        outputs = {
+            name: output
+            for name, output in self.traced.equations.outputs.items()
+            # others are values on the sheet Linkwork
+            if not any(quantities.row_quantity(node.name) for node in names_in(output.formula))
+        }
+        used = {node.name for output in outputs.values() for node in names_in(output.formula)}
+        needed = [link for link in self.traced.equations.links if canonical(link) in used]
+        for link in dict.fromkeys([*self.model.riding, *needed]):
+            if canonical(link) not in self._units:
+                self._add("link", canonical(link), link, Kind.ANGLE, self._link(link))
         self._place_points()
-        for link in self.model.riding:
-            self.links[link] = self._link(link)
-        for name, output in self.traced.equations.outputs.items():
-            if any(quantities.row_quantity(node.name) for node in names_in(output.formula)):
-                continue  # a value on the sheet Linkwork
-            self.outputs[name] = of_radians(output.formula, self._angle)
-            for node in names_in(output.formula):
-                self._need_link(node.name)
+        for name, output in outputs.items():
+            formula = of_radians(output.formula, self._angle)
+            self._add("output", f"output {name}", name, Kind(output.kind), formula)
+
+    def _add(self, of: str, key: str, shown: str, kind: Kind, formula: Node) -> None:
+        made = Quantity(of=of, key=key, shown=shown, kind=kind, formula=formula)
+        self.quantities.append(made)
 
     @property
     def _angle(self) -> AngleUnit:
         return self.model.equations.angle
-
-    @cached_property
-    def quantities(self) -> list[Quantity]:
-        """Links that turn with other links, points and outputs, each after its operands."""
-        found = [
-            Quantity(of="link", key=canonical(link), shown=link, kind=Kind.ANGLE, formula=formula)
-            for link, formula in self.links.items()
-        ]
-        for point, pair in self.points.items():
-            for axis, formula in zip("xy", pair, strict=True):
-                key, shown = coordinate_name(point, axis), f"{point}.{axis}"
-                found.append(
-                    Quantity(of="point", key=key, shown=shown, kind=Kind.LENGTH, formula=formula)
-                )
-        for name, formula in self.outputs.items():
-            kind, key = Kind(self.model.equations.outputs[name].kind), f"output {name}"
-            found.append(Quantity(of="output", key=key, shown=name, kind=kind, formula=formula))
-        return found
 
     # Coefficients
 
@@ -480,17 +475,12 @@ class ClosureFormulas:
         for point, path in paths.items():
             if point not in order and all(path.parent != point for path in paths.values()):
                 continue
-            x, y = self._sum(path.terms)
-            if path.parent is not None:
-                x = LinearForm.named(coordinate_name(path.parent, "x")) + x
-                y = LinearForm.named(coordinate_name(path.parent, "y")) + y
-            self.points[point] = (x.node, y.node)
-
-    def _need_link(self, name: str) -> None:
-        """Add a link whose angle is used by an output but is not an unknown."""
-        for link in self.traced.equations.links:
-            if canonical(link) == name and name not in self.variables:
-                self.links[link] = self._link(link)
+            self.points.append(point)
+            for axis, form in zip("xy", self._sum(path.terms), strict=True):
+                if path.parent is not None:
+                    form = LinearForm.named(coordinate_name(path.parent, axis)) + form
+                key, shown = coordinate_name(point, axis), f"{point}.{axis}"
+                self._add("point", key, shown, Kind.LENGTH, form.node)
 
     def _link(self, link: str) -> Node:
         angle = self.traced.equations.links[link]

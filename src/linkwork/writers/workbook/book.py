@@ -302,7 +302,7 @@ class Book:
             stem = dimension.name if dimension.kind == "dimensions" else _cell_stem(dimension)
             self.names.claim(dimension.key, stem)
             self.values[dimension.key] = dimension.value
-        for k, variable in enumerate(self.variables):
+        for k, variable in enumerate(self.model.equations.variables):
             self.names.claim(variable.symbol, variable.shown)
             self.values[variable.symbol] = self.iterations.values[-1][:, k]
         for variable in self.model.equations.inputs:  # known in rows without a position, too
@@ -318,11 +318,6 @@ class Book:
             for key in (*(v.symbol for v in self.model.equations.unknowns), *self.rates.of):
                 stem = self.names.of[key].rstrip("_")
                 self.names.claim(rate_key(key, order), f"{stem}.{word}")
-
-    @property
-    def variables(self) -> tuple[Variable, ...]:
-        """Unknowns, then inputs."""
-        return self.model.equations.variables
 
     @cached_property
     def lead(self) -> tuple[int, Array]:
@@ -343,7 +338,7 @@ class Book:
     @cached_property
     def scales(self) -> Array:
         """Internal units per file unit of all variables, (N,)."""
-        return np.array([self.scale(variable) for variable in self.variables])
+        return np.array([self.scale(variable) for variable in self.model.equations.variables])
 
     @cached_property
     def dimensions(self) -> list[Dimension]:
@@ -401,11 +396,6 @@ class Book:
     def define(self, key: str, sheet: str, place: str) -> None:
         """Define the name of a cell; ``$B1`` is column B of the row of the formula."""
         self.workbook.define_name(self.names.of[key], f"={sheet}!{place}")
-
-    def head(self, sheet: Any, column: int, title: str, unit: str) -> None:
-        """Write a heading with unit above the rows of positions."""
-        sheet.write(FIRST - 2, column, title, self.style["head"])
-        sheet.write(FIRST - 1, column, unit, self.style["unit"])
 
     def title(self, sheet: Any, what: str) -> None:
         """Write the title of a sheet."""

@@ -37,16 +37,13 @@ def write_charts(book: Book, sheet: Any, columns: dict[str, int]) -> None:
 
 def _curves(book: Book, kind: Kind) -> list[tuple[str, str]]:
     """Keys and names of all quantities of one kind."""
-    equations = book.model.equations
-    named = book.motion.unknowns
     curves = [
         (v.symbol, book.shown(v))
-        for v in equations.unknowns
-        if v.kind == kind.value and v.name in named
+        for v in book.model.equations.unknowns
+        if v.kind == kind.value and v.name in book.motion.unknowns
     ]
-    outputs = {name: equations.outputs[name].kind for name in book.closure.outputs}
-    curves += [(f"output {name}", name) for name, unit in outputs.items() if unit == kind.value]
-    return curves
+    outputs = (quantity for quantity in book.closure.quantities if quantity.of == "output")
+    return curves + [(output.key, output.shown) for output in outputs if output.kind is kind]
 
 
 def _chart(book: Book, kind: Kind, curves: list[tuple[str, str]], columns: dict[str, int]) -> Any:
@@ -249,7 +246,8 @@ def notices(book: Book) -> Iterator[str]:
     settled = [names.get(key, key) for key in book.traced.settled]
     if settled:
         yield f"{', '.join(settled)}: gear ratios keep the values of the file"
-    outputs = [name for name in book.motion.outputs if name not in book.closure.outputs]
+    keys = {quantity.key for quantity in book.closure.quantities}
+    outputs = [name for name in book.motion.outputs if f"output {name}" not in keys]
     if outputs:
         yield f"{', '.join(outputs)}: values on the sheet Linkwork only"
     held = int((book.iterations.found & ~book.iterations.live).sum())

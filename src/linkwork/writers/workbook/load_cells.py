@@ -45,7 +45,7 @@ def force_problem(book: Book) -> str | None:
     ]
     if loose:
         return f"the forces of {loose[0]}, a pin between cylinders, have no cells"
-    turning = {variable.symbol for variable in book.variables}
+    turning = {variable.symbol for variable in book.model.equations.variables}
     for spring in LoadCells(book, None).pulling:
         for link in spring.links or ():
             if link != GROUND and canonical(link) not in turning:
@@ -69,7 +69,7 @@ def _key(book: Book, name: str) -> str | None:
         return "time"
     if name in CONSTANTS:
         return ""
-    for variable in book.variables:
+    for variable in book.model.equations.variables:
         if canonical(name) in (canonical(variable.name), variable.symbol):
             return variable.symbol
         for word, order in (("velocity", 1), ("acceleration", 2)):
