@@ -1,4 +1,4 @@
-"""Programs in C99 without allocation, for controllers."""
+"""The languages of programs as tables of spellings; programs by the suffixes of their files."""
 
 from __future__ import annotations
 
@@ -147,7 +147,7 @@ STRUCTURED_TEXT = Syntax(
         **{name: form.upper() for name, form in _functions("{}({{}})", "{}({{}}, {{}})").items()},
         "ln": "LN({})", "log10": "LOG({})", "hypot": "SQRT(EXPT({}, 2.0) + EXPT({}, 2.0))",
         "^": "EXPT({}, {})", "square": "({0}*{0})", "pi": "3.141592653589793", "e": "EXP(1.0)",
-        "radians": "0.017453292519943295*({})", "degrees": "57.29577951308232*({})",
+        "radians": "(0.017453292519943295*({}))", "degrees": "(57.29577951308232*({}))",
     },
     assign="{name} := {value};",
     constant="{name} := {value};",
