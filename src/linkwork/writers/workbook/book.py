@@ -367,6 +367,12 @@ class Book:
         """Whether cells solve for an unknown; otherwise they contain its values."""
         return any(block.rows and unknown in block.unknowns for block in self.closure.blocks)
 
+    @cached_property
+    def row_shown(self) -> int:
+        """The row with a position that the sheets of one row show first."""
+        solved = np.flatnonzero(self.iterations.found)
+        return int(solved[len(solved) // 6])
+
     @property
     def count(self) -> int:
         """R: the number of requested rows."""

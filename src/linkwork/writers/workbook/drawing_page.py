@@ -52,14 +52,12 @@ class _Page:
     def write(self) -> None:
         """Write the row number, its input, its points and the lines of the picture."""
         book, sheet, style = self.book, self.sheet, self.book.style
-        solved = np.flatnonzero(book.iterations.found)
-        self.shown = int(solved[len(solved) // 6])
         sheet.set_default_row(_ROW)  # explicit row height, since other defaults distort the chart
         sheet.set_column(0, 0, 18)
         sheet.set_column(1, 2, 14)
         sheet.write(0, 0, f"{book.model.description.name}: drawing", style["title"])
         sheet.write(2, 0, "row shown", style["head_left"])
-        sheet.write_number(2, 1, self.shown + 1, style["input"])
+        sheet.write_number(2, 1, book.row_shown + 1, style["input"])
         limits = {"validate": "integer", "criteria": "between", "minimum": 1}
         message = {"error_title": "No such row", "error_message": f"Rows are 1 to {book.count}."}
         sheet.data_validation(2, 1, 2, 1, {**limits, "maximum": book.count, **message})
@@ -79,7 +77,7 @@ class _Page:
         letter = column_name(self.columns[key])
         source = f"INDEX({CYCLE}!${letter}${FIRST + 1}:${letter}${self.book.last},row_shown)"
         formula = f"=IF(ISNUMBER({source}),{source},NA())"
-        value = float(self.book.over_rows(self.book.values[key])[self.shown])
+        value = float(self.book.over_rows(self.book.values[key])[self.book.row_shown])
         self.sheet.write_formula(row, column, formula, self.book.style["number"], cached(value))
 
     def _points(self, row: int) -> None:
@@ -152,7 +150,7 @@ class _Page:
 
     def _value(self, point: str, k: int) -> float:
         key = coordinate_name(point, "xy"[k])
-        return float(self.book.over_rows(self.book.values[key])[self.shown])
+        return float(self.book.over_rows(self.book.values[key])[self.book.row_shown])
 
     def _curve(
         self, chart: Any, name: str, corners: list[list[tuple[str, float]]], look: dict[str, Any]

@@ -44,8 +44,6 @@ class _Page:
     row: int = 3
 
     def __post_init__(self) -> None:
-        solved = np.flatnonzero(self.book.iterations.found)
-        self.shown = int(solved[len(solved) // 6])
         self.bodies = [link for link in self.linkage.links if link != GROUND]
         units = self.book.model.units
         self.length, force = units.of(Kind.LENGTH), units.of(Kind.FORCE)
@@ -63,7 +61,7 @@ class _Page:
             sheet.set_column(column, column, width)
         sheet.write(1, 0, "The row is chosen on the sheet Drawing.", book.style["note"])
         sheet.write(2, 0, "row shown", book.style["head_left"])
-        sheet.write_formula(2, 1, "=row_shown", book.style["count"], self.shown + 1)
+        sheet.write_formula(2, 1, "=row_shown", book.style["count"], book.row_shown + 1)
         self._points()
         self._lines()
         reactions = self._reactions()
@@ -96,15 +94,13 @@ class _Page:
 
     # What is picked from other sheets
 
-    def _pick(self, sheet: str, column: int, value: float, at: tuple[int, int]) -> Any:
-        letter = column_name(column)
-        area = f"{sheet}!${letter}${FIRST + 1}:${letter}${self.book.last}"
-        style = self.book.style["number"]
-        self.sheet.write_formula(*at, f"=INDEX({area},row_shown)", style, cached(value))
-        return self._cell(*at, value)
-
-    def _value(self, key: str) -> float:
-        return float(self.book.over_rows(self.book.values[key])[self.shown])
+    def _pick(self, key: str, column: int) -> Any:
+        """Write the number of a quantity in the row that is shown."""
+        sheet, of = (CYCLE, self.cycle) if key in self.cycle else (FORCES, self.columns.of)
+        area = f"{sheet}!$#${FIRST + 1}:$#${self.book.last}".replace("#", column_name(of[key]))
+        value = float(self.book.over_rows(self.book.values[key])[self.book.row_shown])
+        self._formula(self.row, column, f"INDEX({area},row_shown)", value)
+        return self._cell(self.row, column, value)
 
     def _heads(self, first: str, *titles: tuple[str, str]) -> None:
         """A line of headings, and one of their units if there are any."""
@@ -124,11 +120,7 @@ class _Page:
         self._heads("point", *zip("xy", [self.length] * 2, strict=True))
         for point in self.book.closure.points:
             self.sheet.write(self.row, 0, point)
-            keys = [coordinate_name(point, axis) for axis in "xy"]
-            x, y = (
-                self._pick(CYCLE, self.cycle[key], self._value(key), (self.row, column))
-                for column, key in enumerate(keys, start=1)
-            )
+            x, y = (self._pick(coordinate_name(point, a), k) for k, a in enumerate("xy", start=1))
             self.at[point] = x + 1j * y
             self.row += 1
 
@@ -182,10 +174,7 @@ class _Page:
 
     def _picked(self, name: str, keys: list[str], first: int = 1) -> list[Any]:
         self.sheet.write(self.row, 0, name)
-        entries = [
-            self._pick(FORCES, self.columns.of[key], self._value(key), (self.row, column))
-            for column, key in enumerate(keys, start=first)
-        ]
+        entries = [self._pick(key, column) for column, key in enumerate(keys, start=first)]
         self.row += 1
         return entries
 
@@ -270,7 +259,7 @@ class _Page:
         units = {amount.name: amount.unit for amount in unknowns}
         for key, name in self.columns.efforts.items():
             self.sheet.write(self.row, 0, f"{name} by virtual work")
-            self._pick(FORCES, self.columns.of[key], self._value(key), (self.row, 1))
+            self._pick(key, 1)
             self.sheet.write(self.row, 2, units[name], self.book.style["unit_right"])
             self.row += 1
 
