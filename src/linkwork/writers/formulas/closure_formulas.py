@@ -191,10 +191,8 @@ class FormulaText:
 
     def call(self, node: Call) -> str:
         """The text of a function, of three or more numbers pair by pair."""
-        form, (first, *others) = (
-            self.notation.functions[node.function],
-            map(self.text, node.arguments),
-        )
+        form = self.notation.functions[node.function]
+        first, *others = (self.text(part) for part in node.arguments)
         if len(others) < 2:
             return form.format(first, *others)
         for other in others:
@@ -527,9 +525,15 @@ def rate_of(node: Node, rates: Mapping[str, LinearForm]) -> LinearForm:
         case Call("degrees", (angle,)):
             return rate_of(angle, rates) * (1.0 / AngleUnit.DEGREE.radians)
         case Binary():
-            parts: tuple[Node, ...] = (node.left, node.right)
+            return _chained(node, (node.left, node.right), rates)
         case Call():
-            parts = node.arguments
+            return _chained(node, node.arguments, rates)
+
+
+def _chained(
+    node: Binary | Call, parts: tuple[Node, ...], rates: Mapping[str, LinearForm]
+) -> LinearForm:
+    """The derivative of a function of some parts."""
     total = LinearForm()
     for k, part in enumerate(parts):
         change = rate_of(part, rates)

@@ -178,8 +178,8 @@ def form_of(node: Node) -> LinearForm:
             return form_of(node.left) + form_of(node.right)
         case Binary("-"):
             return form_of(node.left) - form_of(node.right)
-        case Binary("*", NumberNode()):
-            return form_of(node.right) * node.left.value
+        case Binary("*", NumberNode(weight), part):
+            return form_of(part) * weight
         case _:
             return LinearForm.of(node)
 
@@ -192,13 +192,11 @@ def in_radians(form: LinearForm) -> LinearForm:
 
 def _product(left: Node, right: Node) -> Node:
     """left · right, factor by factor from the left."""
-    match left, right:
-        case _, Binary("*"):
-            return Binary("*", _product(left, right.left), right.right)
-        case Binary("*"), _ if left.right == right:
-            return Binary("*", left.left, Binary("^", right, NumberNode(2.0)))
-        case _:
-            return Binary("*", left, right)
+    if isinstance(right, Binary) and right.operator == "*":
+        return Binary("*", _product(left, right.left), right.right)
+    if isinstance(left, Binary) and left.operator == "*" and left.right == right:
+        return Binary("*", left.left, Binary("^", right, NumberNode(2.0)))
+    return Binary("*", left, right)
 
 
 def _weigh(form: LinearForm, factor: float) -> LinearForm:
