@@ -57,9 +57,8 @@ class Follower:
 
 @dataclass(frozen=True)
 class Reading:
-    """A function of the reactions with these names."""
+    """A sum of reactions by name, with weights."""
 
     name: str
     unit: str
-    of: tuple[str, ...]
-    value: Callable[..., Any]
+    weights: dict[str, Any]

@@ -254,7 +254,8 @@ class _Page:
         for amount, entry in zip(followers, sizes, strict=True):
             self._result(amount.name, amount.unit, self._write(self.row, 1, entry))
         for reading in reactions.readings:
-            entry = reading.value(*(self.solved[name] for name in reading.of))
+            parts = (self.solved[name] * weight for name, weight in reading.weights.items())
+            entry = sum(parts, self.trace.plain(0.0))
             self._result(reading.name, reading.unit, self._write(self.row, 1, entry))
         units = {amount.name: amount.unit for amount in unknowns}
         for key, name in self.columns.efforts.items():

@@ -160,12 +160,8 @@ def write_belt(belt: Belt, reactions: Reactions) -> None:
 
     reactions.followers.append(Follower(mean, force, pull, size, tuple(whole)))
     for number, share in ((1, 0.5), (2, -0.5)):
-
-        def tension(pulled: Any, whole: Any, share: float = share) -> Any:
-            return whole + share * pulled
-
-        name = f"{belt.name}.tension{number}"
-        reactions.readings.append(Reading(name, force, (pull, mean), tension))
+        tension = Reading(f"{belt.name}.tension{number}", force, {mean: 1.0, pull: share})
+        reactions.readings.append(tension)
 
 
 # ----------------------------------------------------------------------
@@ -189,12 +185,8 @@ def drive_cylinder(cylinder: Cylinder, reactions: Reactions, effort: str) -> Non
             continue
         stem = reactions.stem(point, "force", cylinder.name)
         for axis, part in (("x", along.real), ("y", along.imag)):
-
-            def component(force: Any, part: Any = sign * part) -> Any:
-                return force * part
-
-            name = f"{stem}.{axis}"
-            reactions.readings.append(Reading(name, reactions.force, (effort,), component))
+            reading = Reading(f"{stem}.{axis}", reactions.force, {effort: sign * part})
+            reactions.readings.append(reading)
 
 
 # ----------------------------------------------------------------------
