@@ -189,9 +189,9 @@ class _Page:
         self._placed(chart, "ground", self.book.model.skeleton.fixed, look)
 
     def _trace(self, chart: Any, point: str) -> None:
-        columns = tuple(self.columns[coordinate_name(point, axis)] for axis in "xy")
+        x, y = (self.columns[coordinate_name(point, axis)] for axis in "xy")
         look = {"name": f"path of {point}", "line": {"color": "#d64545", "width": 1}}
-        add_curve(chart, CYCLE, (FIRST, self.book.last - 1), columns, look)
+        add_curve(chart, CYCLE, (FIRST, self.book.last - 1), (x, y), look)
 
     def _box(self) -> tuple[float, float, float, float]:
         """A square around all rows: its corner, side and gridlines."""
