@@ -30,22 +30,25 @@ class NewtonColumns:
 
 
 def check_size(book: Book) -> None:
-    """Check that the iterations fit into a workbook.
+    """Check that the iterations, positions and rates fit into a workbook.
 
     Raises
     ------
     InputError
         If they have too many cells.
     """
-    columns, count = 3, book.iterations.count
+    columns, count, rows = 3, book.iterations.count, 0
     for block in book.closure.blocks:
-        n = len(block.unknowns) if block.rows else 0
+        n, rows = len(block.unknowns) if block.rows else 0, rows + len(block.rows)
         columns += n + count * (3 * n + n * n)
     if columns > _MOST_COLUMNS:
         raise InputError(
             f"{columns} columns of iterations are too many for a workbook (at most "
             f"{_MOST_COLUMNS}): write CSV"
         )
+    equations = book.model.equations
+    columns += 2 * len(equations.inputs) + 3 * len(equations.unknowns) + 3 * rows
+    columns += len(book.closure.quantities) + 2 * len(book.rates.of)
     if book.count * columns > _MOST_CELLS:
         raise InputError(
             f"{book.count} rows of {columns} columns are too many cells for a workbook with "
