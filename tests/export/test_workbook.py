@@ -18,7 +18,7 @@ from linkwork.core.expression.values import value
 from linkwork.core.foundation.errors import InputError, MissingPackageError
 from linkwork.core.foundation.units import AngleUnit
 from linkwork.core.mechanism.linkage import Linkage
-from linkwork.writers.formulas.closure_formulas import CellFormula
+from linkwork.writers.formulas.closure_formulas import cell_text, of_radians, value_of
 from linkwork.writers.workbook import workbook
 from linkwork.writers.workbook.book import CellNames
 from linkwork.writers.workbook.layout import FastCells
@@ -112,11 +112,10 @@ def test_a_name_is_none_that_a_spreadsheet_reads_otherwise(wanted: str, name: st
 def test_a_cell_formula_means_what_the_files_formula_means(formula: str, unit: AngleUnit) -> None:
     numbers = {"a": 1.3, "b": 2.1, "c": 1.7}
     tree = parse(formula)
-    text = CellFormula(tree, unit).text({name: str(number) for name, number in numbers.items()})
+    formula = of_radians(tree, unit)
+    text = cell_text(formula, {name: str(number) for name, number in numbers.items()})
     assert calculated(text) == pytest.approx(value(tree, numbers, unit), rel=_ROUNDING)
-    assert CellFormula(tree, unit).value(numbers) == pytest.approx(
-        value(tree, numbers, unit), rel=_ROUNDING
-    )
+    assert value_of(formula, numbers) == pytest.approx(value(tree, numbers, unit), rel=_ROUNDING)
 
 
 def test_names_differ_without_regard_to_capitals() -> None:

@@ -13,7 +13,7 @@ import linkwork as lw
 from linkwork.core.expression.grammar import parse
 from linkwork.core.expression.values import FUNCTIONS
 from linkwork.core.foundation.units import AngleUnit
-from linkwork.writers.formulas.closure_formulas import CellFormula
+from linkwork.writers.formulas.closure_formulas import cell_text, of_radians
 from tests.export.coarse import coarse
 from tests.oracles.spreadsheet_functions import ARGUMENTS, calls
 from tests.thinned import thinned
@@ -70,7 +70,8 @@ def test_every_formula_is_one_of_the_file_format(name: str, tmp_path: Path) -> N
 @pytest.mark.parametrize("unit", list(AngleUnit))
 def test_every_function_of_files_has_one_in_cells(name: str, unit: AngleUnit) -> None:
     given = "a, b" if name in _TWO else "a"
-    check_formula(CellFormula(parse(f"{name}({given})"), unit).text({"a": "B1", "b": "B2"}))
+    formula = of_radians(parse(f"{name}({given})"), unit)
+    check_formula(cell_text(formula, {"a": "B1", "b": "B2"}))
 
 
 def test_a_formula_too_long_for_a_cell_is_values_only(tmp_path: Path) -> None:

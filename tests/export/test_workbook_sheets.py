@@ -123,7 +123,7 @@ def test_too_many_cells_are_refused(tmp_path: Path) -> None:
     mechanism = lw.example("double-butterfly")
     motion = mechanism.sweep(step=0.04, certify=False)
     message = (
-        "9001 rows of 261 columns are too many cells for a workbook with formulas (at most "
+        "9001 rows of 257 columns are too many cells for a workbook with formulas (at most "
         "2000000): take a larger step, or write CSV"
     )
     with pytest.raises(InputError, match=f"^{re.escape(message)}$"):

@@ -66,7 +66,7 @@ class _FormArithmetic(Arithmetic["LinearForm"]):
         if x.fixed:
             return _weigh(y, x.constant)
         (left, one), (right, other) = _factored(x), _factored(y)
-        node = Binary("^", left, NumberNode(2.0)) if left == right else Binary("*", left, right)
+        node = Binary("^", left, NumberNode(2.0)) if left == right else _product(left, right)
         return _weigh(LinearForm.of(node), one * other)
 
     def divide(self, x: LinearForm, y: LinearForm) -> LinearForm:
@@ -165,6 +165,38 @@ class LinearForm(Operand):
         """The formula in degrees of an angle in radians."""
         in_file_unit = self.per(_DEGREE)
         return Call("degrees", (self.angle,)) if in_file_unit is None else in_file_unit.node
+
+
+def form_of(node: Node) -> LinearForm:
+    """A formula as a form: signs, sums and numerical factors are read."""
+    match node:
+        case NumberNode():
+            return LinearForm(node.value)
+        case Negative():
+            return -form_of(node.operand)
+        case Binary("+"):
+            return form_of(node.left) + form_of(node.right)
+        case Binary("-"):
+            return form_of(node.left) - form_of(node.right)
+        case Binary("*", NumberNode(weight), part):
+            return form_of(part) * weight
+        case _:
+            return LinearForm.of(node)
+
+
+def in_radians(form: LinearForm) -> LinearForm:
+    """A form in degrees, with all numbers divided by 180/π; factors like 1 are exact."""
+    terms = tuple((node, _short(w * _DEGREE) or w * _DEGREE) for node, w in form.terms)
+    return LinearForm(form.constant * _DEGREE, terms)
+
+
+def _product(left: Node, right: Node) -> Node:
+    """left · right, factor by factor from the left."""
+    if isinstance(right, Binary) and right.operator == "*":
+        return Binary("*", _product(left, right.left), right.right)
+    if isinstance(left, Binary) and left.operator == "*" and left.right == right:
+        return Binary("*", left.left, Binary("^", right, NumberNode(2.0)))
+    return Binary("*", left, right)
 
 
 def _weigh(form: LinearForm, factor: float) -> LinearForm:

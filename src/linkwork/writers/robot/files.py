@@ -21,11 +21,29 @@ from linkwork.writers.robot.robot import Couplings, JointPolynomial, Robot, coup
 
 #: The ground in MJCF and SDF.
 WORLD = "world"
+_ACROSS = "0.0 0.0 1.0"  # the axis of pins
+#: Kinds of joints in URDF and SDF.
+_KINDS = {PairKind.PIN: "revolute", PairKind.SLIDE: "prismatic", PairKind.FIXED: "fixed"}
 
 
 def numbers(*values: float) -> str:
     """Numbers as text that reads back as the same numbers."""
     return " ".join(repr(float(value) + 0.0) for value in values)
+
+
+def vector(z: complex) -> str:
+    """A place or direction of the plane as x, y, z."""
+    return numbers(z.real, z.imag, 0.0)
+
+
+def pose(place: complex, angle: float = 0.0) -> str:
+    """A place and an angle of the plane as x, y, z, roll, pitch, yaw."""
+    return numbers(place.real, place.imag, 0.0, 0.0, 0.0, angle)
+
+
+def axis_of(robot: Robot, joint: TreeJoint) -> str:
+    """The axis of a pin or slide in the frame of its child."""
+    return vector(robot.axis(joint)) if joint.edge.kind is PairKind.SLIDE else _ACROSS
 
 
 def element(parent: Tree.Element, tag: str, text: str = "", **attributes: str) -> Tree.Element:
@@ -55,33 +73,22 @@ def mjcf_of(robot: Robot) -> str:
     """Write a mechanism for MuJoCo, with its real loops."""
     root = Tree.Element("mujoco", model=robot.name)
     element(root, "compiler", angle="radian", autolimits="true", inertiafromgeom="false")
-    fall = robot.gravity()
-    element(root, "option", gravity=numbers(fall.real, fall.imag, 0.0))
+    element(root, "option", gravity=vector(robot.gravity()))
     places = {GROUND: element(root, "worldbody")}
     for point, place in robot.points(GROUND).items():
         _site(places[GROUND], GROUND, point, place)
     for joint in robot.tree.joints:
-        position, angle = robot.mounted(joint)
-        body = places[joint.child] = element(
-            places[joint.parent],
-            "body",
-            name=joint.child,
-            pos=numbers(position.real, position.imag, 0.0),
-            quat=numbers(math.cos(angle / 2), 0.0, 0.0, math.sin(angle / 2)),
-        )
-        inertia = robot.inertia(joint.child)
-        element(
-            body,
-            "inertial",
-            pos=numbers(inertia.center.real, inertia.center.imag, 0.0),
-            mass=numbers(inertia.mass),
-            diaginertia=numbers(*[inertia.inertia] * 3),
-        )
-        if joint.edge.kind in _MJCF_KINDS:
-            along = robot.axis(joint) if joint.edge.kind is PairKind.SLIDE else None
-            axis = (0.0, 0.0, 1.0) if along is None else (along.real, along.imag, 0.0)
-            kind = _MJCF_KINDS[joint.edge.kind]
-            element(body, "joint", name=joint.name, type=kind, axis=numbers(*axis))
+        place, angle = robot.mounted(joint)
+        turned = numbers(math.cos(angle / 2), 0.0, 0.0, math.sin(angle / 2))
+        parent = places[joint.parent]
+        body = element(parent, "body", name=joint.child, pos=vector(place), quat=turned)
+        places[joint.child] = body
+        bar = robot.inertia(joint.child)
+        mass, inertia = numbers(bar.mass), numbers(*[bar.inertia] * 3)
+        element(body, "inertial", pos=vector(bar.center), mass=mass, diaginertia=inertia)
+        kind = _MJCF_KINDS.get(joint.edge.kind)
+        if kind is not None:
+            element(body, "joint", name=joint.name, type=kind, axis=axis_of(robot, joint))
         for point, place in robot.points(joint.child).items():
             _site(body, joint.child, point, place)
     _constraints(root, robot)
@@ -95,8 +102,7 @@ def mjcf_of(robot: Robot) -> str:
 
 
 def _site(body: Tree.Element, name: str, point: str, place: complex) -> None:
-    pos = numbers(place.real, place.imag, 0.0)
-    element(body, "site", name=f"{name}/{point}", pos=pos, size="0.002")
+    element(body, "site", name=f"{name}/{point}", pos=vector(place), size="0.002")
 
 
 def _constraints(root: Tree.Element, robot: Robot) -> None:
@@ -131,7 +137,6 @@ def _constraints(root: Tree.Element, robot: Robot) -> None:
 
 
 _UNTITLED = "mechanism"
-_SDF_KINDS = {PairKind.PIN: "revolute", PairKind.SLIDE: "prismatic", PairKind.FIXED: "fixed"}
 
 
 def sdf_of(robot: Robot) -> str:
@@ -160,31 +165,30 @@ def sdf_of(robot: Robot) -> str:
         title = _UNTITLED
     model = element(root, "model", name=title)
     if robot.gravity():
-        fall = robot.gravity()
-        gravity = numbers(fall.real, fall.imag, 0.0)
+        gravity = vector(robot.gravity())
         notes.append(f"The world's gravity has to be {gravity}: a model cannot give it.")
     for joint in robot.tree.joints:
-        _sdf_link(model, robot, joint, gravity=bool(robot.gravity()))
+        _sdf_link(model, robot, joint)
+    for joint in robot.tree.joints:  # those of ground cannot be frames of a model
+        for point, place in robot.points(joint.child).items():
+            frame = element(model, "frame", name=f"{joint.child}/{point}", attached_to=joint.child)
+            element(frame, "pose", pose(place))
     for joint in robot.tree.joints:
-        _points(model, robot, joint.child)
-    for joint in robot.tree.joints:
-        kind = joint.edge.kind
-        along = robot.axis(joint) if kind is PairKind.SLIDE else None
-        _sdf_joint(model, kind, joint.name, (joint.parent, joint.child), along=along)
+        bodies = joint.parent, joint.child
+        _sdf_joint(model, joint.edge.kind, joint.name, bodies, axis=axis_of(robot, joint))
     for k, edge in enumerate(robot.tree.closing):
         _closing(model, robot, edge, k)
     return written(root, notes)
 
 
-def _sdf_link(model: Tree.Element, robot: Robot, joint: TreeJoint, *, gravity: bool) -> None:
+def _sdf_link(model: Tree.Element, robot: Robot, joint: TreeJoint) -> None:
     link = element(model, "link", name=joint.child)
-    place, angle = robot.frame(joint.child)
-    element(link, "pose", numbers(place.real, place.imag, 0, 0, 0, angle))
-    if not gravity:
+    element(link, "pose", pose(*robot.frame(joint.child)))
+    if not robot.gravity():
         element(link, "gravity", "false")
     bar = robot.inertia(joint.child)
     inertial = element(link, "inertial")
-    element(inertial, "pose", numbers(bar.center.real, bar.center.imag, 0, 0, 0, 0))
+    element(inertial, "pose", pose(bar.center))
     element(inertial, "mass", numbers(bar.mass))
     inertia = element(inertial, "inertia")
     for name in ("ixx", "iyy", "izz"):
@@ -195,31 +199,23 @@ def _is_reserved(name: str) -> bool:
     return len(name) >= 4 and name.startswith("__") and name.endswith("__")
 
 
-def _points(model: Tree.Element, robot: Robot, body: str) -> None:
-    """The points of a body as frames: those of ground cannot be frames of a model."""
-    for point, place in robot.points(body).items():
-        frame = element(model, "frame", name=f"{body}/{point}", attached_to=body)
-        element(frame, "pose", numbers(place.real, place.imag, 0, 0, 0, 0))
-
-
 def _sdf_joint(
     model: Tree.Element,
     kind: PairKind,
     name: str,
     bodies: tuple[str, str],
     *,
-    along: complex | None = None,
     place: complex = 0j,
+    axis: str = _ACROSS,
 ) -> None:
     """A joint; its frame is at a place in the child's frame."""
     parent, child = (WORLD if body == GROUND else body for body in bodies)
-    made = element(model, "joint", name=name, type=_SDF_KINDS[kind])
+    made = element(model, "joint", name=name, type=_KINDS[kind])
     element(made, "parent", parent)
     element(made, "child", child)
-    element(made, "pose", numbers(place.real, place.imag, 0, 0, 0, 0))
+    element(made, "pose", pose(place))
     if kind is not PairKind.FIXED:
-        axis = (0.0, 0.0, 1.0) if along is None else (along.real, along.imag, 0.0)
-        element(element(made, "axis"), "xyz", numbers(*axis))
+        element(element(made, "axis"), "xyz", axis)
 
 
 def _closing(model: Tree.Element, robot: Robot, edge: Pair, k: int) -> None:
@@ -253,7 +249,7 @@ def urdf_of(robot: Robot, motion: Motion) -> str:
         _urdf_link(root, robot, joint)
         _urdf_joint(root, robot, joint, couplings)
     for name, polynomial in couplings.joints.items():
-        _polynomial(root, name, polynomial, couplings)
+        _polynomial(root, name, polynomial, couplings.leading.name)
     others = [j.name for j in robot.driven().values() if j not in (None, couplings.leading)]
     step = f"Driven as well, here in step with it as in the table: {', '.join(others)}."
     return written(root, [*robot.notes(), *_notes(couplings), *([step] if others else [])])
@@ -279,7 +275,7 @@ def _notes(couplings: Couplings) -> list[str]:
 def _urdf_link(root: Tree.Element, robot: Robot, joint: TreeJoint) -> None:
     bar = robot.inertia(joint.child)
     inertial = element(element(root, "link", name=joint.child), "inertial")
-    element(inertial, "origin", xyz=numbers(bar.center.real, bar.center.imag, 0.0), rpy="0 0 0")
+    element(inertial, "origin", xyz=vector(bar.center), rpy="0 0 0")
     element(inertial, "mass", value=numbers(bar.mass))
     diagonal = dict.fromkeys(("ixx", "iyy", "izz"), numbers(bar.inertia))
     element(inertial, "inertia", **diagonal, ixy="0", ixz="0", iyz="0")
@@ -288,44 +284,31 @@ def _urdf_link(root: Tree.Element, robot: Robot, joint: TreeJoint) -> None:
 def _urdf_joint(root: Tree.Element, robot: Robot, joint: TreeJoint, couplings: Couplings) -> None:
     leads = joint.name == couplings.leading.name
     low, high = couplings.limits
-    kind = {PairKind.FIXED: "fixed", PairKind.PIN: "revolute", PairKind.SLIDE: "prismatic"}
     whole = leads and not any(couplings.stopped) and high - low >= 2.0 * math.pi - 1e-9
     turns = whole and joint.edge.kind is PairKind.PIN
-    made = element(
-        root, "joint", name=joint.name, type="continuous" if turns else kind[joint.edge.kind]
-    )
+    kind = "continuous" if turns else _KINDS[joint.edge.kind]
+    made = element(root, "joint", name=joint.name, type=kind)
     place, angle = robot.mounted(joint)
-    element(made, "origin", xyz=numbers(place.real, place.imag, 0.0), rpy=numbers(0, 0, angle))
+    element(made, "origin", xyz=vector(place), rpy=numbers(0, 0, angle))
     element(made, "parent", link=joint.parent)
     element(made, "child", link=joint.child)
     if joint.edge.kind is PairKind.FIXED:
         return
-    along = robot.axis(joint) if joint.edge.kind is PairKind.SLIDE else None
-    axis = (0.0, 0.0, 1.0) if along is None else (along.real, along.imag, 0.0)
-    element(made, "axis", xyz=numbers(*axis))
-    if not leads:
-        low, high = couplings.joints[joint.name].range
+    element(made, "axis", xyz=axis_of(robot, joint))
+    form = None if leads else couplings.joints[joint.name]
+    low, high = couplings.limits if form is None else form.range
     ends = {} if turns else {"lower": numbers(low), "upper": numbers(high)}
     element(made, "limit", **ends, effort=_STRONGEST, velocity=_FASTEST)
-    if not leads:
-        factor, offset = couplings.joints[joint.name].line
-        leader = couplings.leading.name
-        element(made, "mimic", joint=leader, multiplier=numbers(factor), offset=numbers(offset))
+    if form is not None:
+        factor, offset = map(numbers, form.line)
+        element(made, "mimic", joint=couplings.leading.name, multiplier=factor, offset=offset)
 
 
-def _polynomial(root: Tree.Element, name: str, form: JointPolynomial, couplings: Couplings) -> None:
-    low, high = form.series.domain.tolist()
-    element(
-        root,
-        "coupling",
-        numbers(*form.series.coef.tolist()),
-        joint=name,
-        driven=couplings.leading.name,
-        low=numbers(low),
-        high=numbers(high),
-        error=f"{form.error:.3e}",
-        mimic_error=f"{form.line_error:.3e}",
-    )
+def _polynomial(root: Tree.Element, name: str, form: JointPolynomial, driven: str) -> None:
+    low, high = map(numbers, form.series.domain.tolist())
+    made = element(root, "coupling", numbers(*form.series.coef.tolist()), joint=name, driven=driven)
+    made.attrib |= {"low": low, "high": high, "error": f"{form.error:.3e}"}
+    made.set("mimic_error", f"{form.line_error:.3e}")
 
 
 # ----------------------------------------------------------------------

@@ -4,16 +4,14 @@ from __future__ import annotations
 
 import math
 import re
-from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, field
 from functools import cache, cached_property
 from typing import Any
 
 import numpy as np
 
-from linkwork.core.equations.compiling import coordinate_name
 from linkwork.core.equations.model import Variable
-from linkwork.core.expression.tree import names_in
+from linkwork.core.expression.tree import Node
 from linkwork.core.foundation.arrays import AnyArray, Array, BoolArray, IndexArray
 from linkwork.core.foundation.names import canonical, pretty
 from linkwork.core.mechanism.bodies import DiscFigure
@@ -21,8 +19,13 @@ from linkwork.core.motion.model import Model, leading_input
 from linkwork.core.numerics.newton import corrections
 from linkwork.core.results.motion import Motion
 from linkwork.core.results.quantity import Kind
-from linkwork.writers.formulas.closure_formulas import CellFormula, ClosureFormulas
-from linkwork.writers.formulas.rate_formulas import RateFormulas
+from linkwork.writers.formulas.closure_formulas import (
+    ClosureFormulas,
+    UniqueNames,
+    cell_text,
+    value_of,
+)
+from linkwork.writers.formulas.rate_formulas import RateFormulas, rate_key
 from linkwork.writers.formulas.traced import Dimension, TracedEquations
 
 #: Names that spreadsheets read as a cell, row, column or Boolean.
@@ -39,27 +42,15 @@ def chart_text(text: str) -> str:
     return text.replace("!", "!\u2060")
 
 
-@dataclass
-class CellNames:
-    """Unique valid names of cells; spreadsheets ignore case."""
+class CellNames(UniqueNames):
+    """Valid names of cells by key."""
 
-    cells: dict[str, str] = field(default_factory=dict)
-    _used: set[str] = field(default_factory=set)
-
-    def claim(self, key: str, preferred: str) -> str:
-        """A cell name for ``key``, as similar as possible to the preferred one."""
+    def stem(self, preferred: str) -> str:
+        """Letters, digits, underscores and points, no digit first, and no address of a cell."""
         stem = _ODD.sub("_", canonical(preferred).replace("'", "_prime"))[:_LONGEST]
         if not (stem[0].isalpha() or stem[0] == "_"):
             stem = f"_{stem}"
-        if _TAKEN.fullmatch(stem):
-            stem += "_"
-        name, count = stem, 1
-        while name.casefold() in self._used:
-            count += 1
-            name = f"{stem.rstrip('_')}_{count}"
-        self._used.add(name.casefold())
-        self.cells[key] = name
-        return name
+        return f"{stem}_" if _TAKEN.fullmatch(stem) else stem
 
 
 # ----------------------------------------------------------------------
@@ -185,23 +176,23 @@ def iterated(model: Model, motion: Motion, closure: ClosureFormulas) -> Iteratio
     start, above = _rounded(model, right), np.full(len(rows), -1, dtype=np.intp)
     values = np.repeat(right[None], _MOST + 1, axis=0)
     live = np.zeros(len(rows), dtype=bool)
-    # each attempt takes the rows that the one before it could not recalculate
-    for attempt in ("above", "estimate", "value"):
-        trying = np.flatnonzero(solved & ~live & ((before >= 0) | (attempt != "above")))
-        if attempt == "above":
-            guess = right[before[trying]]
-        else:
-            guess = start[trying] if attempt == "estimate" else right[trying]
+
+    def attempt(trying: IndexArray, guess: Array) -> IndexArray:
+        """Try some rows from estimates; those whose cells converge to their positions."""
         tried = _newton(model, closure, guess, right[trying])
         away = np.abs((tried[-1] - right[trying]) * scale / _sizes(model)).max(axis=1, initial=0.0)
         good = away <= _RIGHT
         values[:, trying[good]] = tried[:, good]
         live[trying[good]] = True
-        if attempt == "above":
-            above[trying[good]] = before[trying[good]]
-        # the cells of such a row hold the solution
-        elif attempt == "value":
-            values[:, trying[~good]] = right[trying[~good]]
+        return trying[good]
+
+    # each attempt takes the rows that the one before it could not recalculate
+    behind = np.flatnonzero(solved & (before >= 0))
+    converged = attempt(behind, right[before[behind]])
+    above[converged] = before[converged]
+    for estimates in (start, right):
+        lost = np.flatnonzero(solved & ~live)
+        attempt(lost, estimates[lost])
     needed = _needed(model, values[:, live])
     return Iterations(
         rows=rows,
@@ -311,27 +302,22 @@ class Book:
             stem = dimension.name if dimension.kind == "dimensions" else _cell_stem(dimension)
             self.names.claim(dimension.key, stem)
             self.values[dimension.key] = dimension.value
-        for k, variable in enumerate(self.variables):
+        for k, variable in enumerate(self.model.equations.variables):
             self.names.claim(variable.symbol, variable.shown)
             self.values[variable.symbol] = self.iterations.values[-1][:, k]
         for variable in self.model.equations.inputs:  # known in rows without a position, too
             series = self.motion.inputs[variable.name]
             self.values[variable.symbol] = series[self.iterations.rows]
-        for link in self.closure.links:
-            self.names.claim(canonical(link), f"theta_{link}")
-        for point in self.closure.points:
-            for axis in "xy":
-                self.names.claim(coordinate_name(point, axis), f"{point}.{axis}")
+        for quantity in self.closure.quantities:
+            before = "theta_" if quantity.of == "link" else ""
+            self.names.claim(quantity.key, f"{before}{quantity.shown}")
         for part in self.closure.coefficients.values():
             self.names.claim(part.key, part.wanted)
-            self.values[part.key] = float(part.formula.value(self.values))
-        for name in self.closure.outputs:
-            self.names.claim(f"output {name}", name)
-
-    @property
-    def variables(self) -> tuple[Variable, ...]:
-        """Unknowns, then inputs."""
-        return self.model.equations.variables
+            self.values[part.key] = float(value_of(part.formula, self.values))
+        for order, word in ((1, "velocity"), (2, "acceleration")):
+            for key in (*(v.symbol for v in self.model.equations.unknowns), *self.rates.of):
+                stem = self.names.of[key].rstrip("_")
+                self.names.claim(rate_key(key, order), f"{stem}.{word}")
 
     @cached_property
     def lead(self) -> tuple[int, Array]:
@@ -352,37 +338,14 @@ class Book:
     @cached_property
     def scales(self) -> Array:
         """Internal units per file unit of all variables, (N,)."""
-        return np.array([self.scale(variable) for variable in self.variables])
+        return np.array([self.scale(variable) for variable in self.model.equations.variables])
 
     @cached_property
     def dimensions(self) -> list[Dimension]:
         """The dimensions with cells: those of the file, and points used by formulas."""
         kept = ("dimensions", "lengths", "angles")
         # a sketch has many points that formulas do not use
-        return [d for d in self.traced.dimensions if d.kind in kept or d.key in self.used]
-
-    @cached_property
-    def used(self) -> set[str]:
-        """The keys of everything that a formula uses, derived dimensions included."""
-        used = set(self._used())
-        for dimension in reversed(self.traced.dimensions):
-            if dimension.key in used and dimension.formula is not None:
-                used |= {node.name for node in names_in(dimension.formula)}
-        return used
-
-    def _used(self) -> Iterator[str]:
-        closure = self.closure
-        formulas = [part.formula for part in closure.coefficients.values()]
-        formulas += [formula for pair in closure.points.values() for formula in pair]
-        formulas += [*closure.links.values(), *closure.outputs.values()]
-        formulas += [formula for pair in self.rates.of.values() for formula in pair]
-        formulas += [released for _, released in closure.released]
-        for block, sides in zip(closure.blocks, self.rates.sides, strict=True):
-            formulas += [formula for pair in sides for formula in pair]
-            for row in block.rows:
-                formulas += [row.formula, *row.slopes]
-        for formula in formulas:
-            yield from (node.name for node in names_in(formula.node))
+        return [d for d in self.traced.dimensions if d.kind in kept or d.key in self.rates.used]
 
     @cached_property
     def linkwork_columns(self) -> dict[str, int]:
@@ -404,6 +367,12 @@ class Book:
         """Whether cells solve for an unknown; otherwise they contain its values."""
         return any(block.rows and unknown in block.unknowns for block in self.closure.blocks)
 
+    @cached_property
+    def row_shown(self) -> int:
+        """The row with a position that the sheets of one row show first."""
+        solved = np.flatnonzero(self.iterations.found)
+        return int(solved[len(solved) // 6])
+
     @property
     def count(self) -> int:
         """R: the number of requested rows."""
@@ -422,9 +391,9 @@ class Book:
         """Internal units per file unit."""
         return self.model.units.scale(Kind(variable.kind))
 
-    def text(self, formula: CellFormula, **instead: str) -> str:
+    def text(self, formula: Node, **instead: str) -> str:
         """The text of a formula in a cell."""
-        return "=" + formula.text({**self.names.cells, **instead})
+        return "=" + cell_text(formula, {**self.names.of, **instead})
 
     def shown(self, variable: Variable) -> str:
         """The name of a variable in headings."""
@@ -432,51 +401,11 @@ class Book:
 
     def define(self, key: str, sheet: str, place: str) -> None:
         """Define the name of a cell; ``$B1`` is column B of the row of the formula."""
-        self.workbook.define_name(self.names.cells[key], f"={sheet}!{place}")
-
-    def head(self, sheet: Any, column: int, title: str, unit: str) -> None:
-        """Write a heading with unit above the rows of positions."""
-        sheet.write(FIRST - 2, column, title, self.style["head"])
-        sheet.write(FIRST - 1, column, unit, self.style["unit"])
+        self.workbook.define_name(self.names.of[key], f"={sheet}!{place}")
 
     def title(self, sheet: Any, what: str) -> None:
         """Write the title of a sheet."""
         sheet.write(0, 0, f"{self.model.description.name}: {what}", self.style["title"])
-
-    def group_heads(self, sheet: Any, groups: Iterable[tuple[str, int, int]]) -> None:
-        """Write titles above groups of columns, from the first to the last column."""
-        for title, first, last in groups:
-            if first == last:
-                sheet.write(FIRST - 3, first, title, self.style["group"])
-            else:
-                sheet.merge_range(FIRST - 3, first, FIRST - 3, last, title, self.style["group"])
-
-    def row_numbers(self, sheet: Any) -> None:
-        """Write the column of row numbers."""
-        self.head(sheet, 0, "row", "")
-        for k in range(self.count):
-            sheet.write_number(FIRST + k, 0, k + 1, self.style["count"])
-
-    def put(
-        self, sheet: Any, k: int, column: int, formula: str, look: str, value: float | str
-    ) -> None:
-        """Write a formula in the row of position k, with its value, unless that is not known."""
-        if not isinstance(value, str):
-            known = math.isfinite(value) or self.iterations.found[k]
-            value = cached(value) if known else NO_VALUE
-        sheet.write_formula(FIRST + k, column, formula, self.style[look], value)
-
-    def column(self, sheet: Any, column: int, formula: CellFormula, look: str) -> Array:
-        """Write a formula in all rows; returns its values (R,)."""
-        values = self.over_rows(formula.value(self.values))
-        if not any(True for _ in names_in(formula.node)):
-            for k, value in enumerate(values.tolist()):
-                sheet.write_number(FIRST + k, column, value, self.style[look])
-            return values
-        shown = self.text(formula)
-        for k, value in enumerate(values.tolist()):
-            self.put(sheet, k, column, shown, look, value)
-        return values
 
     def over_rows(self, values: Any) -> np.ndarray[Any, Any]:
         """Values as an array (R,)."""

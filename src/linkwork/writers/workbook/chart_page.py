@@ -12,8 +12,8 @@ from linkwork.core.equations.writing import EquationSheet
 from linkwork.core.foundation.statuses import Certification
 from linkwork.core.results.quantity import Kind
 from linkwork.writers.workbook.book import CYCLE, FIRST, Book, chart_text, column_name
-from linkwork.writers.workbook.cycle_page import CycleColumns, statement
-from linkwork.writers.workbook.layout import PRINTED, print_on_one_page, print_table
+from linkwork.writers.workbook.cycle_page import statement
+from linkwork.writers.workbook.layout import PRINTED, add_curve, print_on_one_page, print_table
 from linkwork.writers.workbook.load_cells import force_problem
 
 _CHART_PAGE_WIDTH, _HEIGHT, _ROWS = 1100, 400, 21
@@ -37,36 +37,21 @@ def write_charts(book: Book, sheet: Any, columns: dict[str, int]) -> None:
 
 def _curves(book: Book, kind: Kind) -> list[tuple[str, str]]:
     """Keys and names of all quantities of one kind."""
-    equations = book.model.equations
-    named = book.motion.unknowns
     curves = [
         (v.symbol, book.shown(v))
-        for v in equations.unknowns
-        if v.kind == kind.value and v.name in named
+        for v in book.model.equations.unknowns
+        if v.kind == kind.value and v.name in book.motion.unknowns
     ]
-    outputs = {name: equations.outputs[name].kind for name in book.closure.outputs}
-    curves += [(f"output {name}", name) for name, unit in outputs.items() if unit == kind.value]
-    return curves
+    outputs = (quantity for quantity in book.closure.quantities if quantity.of == "output")
+    return curves + [(output.key, output.shown) for output in outputs if output.kind is kind]
 
 
 def _chart(book: Book, kind: Kind, curves: list[tuple[str, str]], columns: dict[str, int]) -> Any:
     chart = book.workbook.add_chart({"type": "scatter", "subtype": "straight"})
-    leading = next(
-        (v for v in book.model.equations.inputs if _moves(book, v.name)),
-        book.model.equations.inputs[0],
-    )
-    x = columns[leading.symbol]
+    leading, rows = book.leading, (FIRST, book.last - 1)
     for key, name in curves:
-        column = columns[key]
-        chart.add_series(
-            {
-                "name": name,
-                "categories": [CYCLE, FIRST, x, book.last - 1, x],
-                "values": [CYCLE, FIRST, column, book.last - 1, column],
-                "line": {"width": 1.75},
-                "marker": {"type": "none"},
-            }
-        )
+        look = {"name": name, "line": {"width": 1.75}}
+        add_curve(chart, CYCLE, rows, (columns[leading.symbol], columns[key]), look)
     values = book.motion.inputs[leading.name][book.iterations.rows]
     grid = {"visible": True, "line": {"color": "#e4e7eb", "width": 0.5}}
     axis: dict[str, Any] = {
@@ -86,11 +71,6 @@ def _chart(book: Book, kind: Kind, curves: list[tuple[str, str]], columns: dict[
     chart.show_na_as_empty_cell()  # a gap where there is no position, not a line across
     chart.set_size({"width": _CHART_PAGE_WIDTH, "height": _HEIGHT})
     return chart
-
-
-def _moves(book: Book, name: str) -> bool:
-    values = book.motion.inputs[name]
-    return bool((values != values[0]).any())
 
 
 def _right_angles(span: float) -> float:
@@ -149,7 +129,7 @@ _ABOUT_PAGE_WIDTH = 110  # characters per line of equations
 _LINE, _LINE_LENGTH = 15.0, 95  # height of a text line, and its characters
 
 
-def write_about(book: Book, sheet: Any, columns: CycleColumns, version: str) -> None:
+def write_about(book: Book, sheet: Any, columns: dict[str, int], version: str) -> None:
     """Write title, instructions, parts that do not recalculate, Linkwork's evidence, equations."""
     style, description = book.style, book.model.description
     sheet.hide_gridlines(2)
@@ -174,58 +154,55 @@ def write_about(book: Book, sheet: Any, columns: CycleColumns, version: str) -> 
     print_on_one_page(sheet, tall=1 if row < _ONE_PAGE else 0)
 
 
-def _facts(book: Book, version: str) -> Iterator[tuple[str, str]]:
+def _facts(book: Book, version: str) -> list[tuple[str, str]]:
     description, count = book.model.description, book.count
-    yield (
-        "How to use it",
-        (
-            "Edit a yellow cell of the sheet Dimensions: the formulas of the sheet Newton solve "
-            "all rows of Cycle again, and Velocities follows. Drawing shows the row whose number "
-            "you enter there."
-        ),
-    )
-    if description.source:
-        yield "Source", description.source
-    yield "Written by", f"Linkwork {version}; the sheet Linkwork contains its results"
-    unit = book.unit("angle")
-    yield "Units", f"lengths in {description.length}, angles in {unit}, counter-clockwise"
-    yield (
-        "Names",
-        (
-            "A name that looks like a cell gets an underscore: a2 becomes a2_. Names of unknowns "
-            "and points refer to the row of the formula."
-        ),
-    )
-    yield "Rows", f"{count} values of the input, {int(book.iterations.found.sum())} with a position"
     statuses = ", ".join(f"{s.name} {n}" for s, n in book.motion.counts.items())
     proved = sum(c is Certification.CERTIFIED for c in book.motion.certification)
-    yield (
-        "By Linkwork",
-        (
-            f"{statuses}; {proved} of {len(book.motion)} rows proved, for the dimensions and "
-            "inputs of the file. The lines below and the statuses of Cycle follow the cells."
-        ),
+    source = [("Source", description.source)] if description.source else []
+    use = (
+        "Edit a yellow cell of the sheet Dimensions: the formulas of the sheet Newton solve all "
+        "rows of Cycle again, and Velocities follows. Drawing shows the row whose number you enter "
+        "there."
     )
-    yield "Iterations in every row", str(book.iterations.count)
+    units = f"in {description.length}, angles in {book.unit('angle')}, counter-clockwise"
+    names = (
+        "A name that looks like a cell gets an underscore: a2 becomes a2_. Names of unknowns and "
+        "points refer to the row of the formula."
+    )
+    solved = int(book.iterations.found.sum())
+    evidence = (
+        f"{statuses}; {proved} of {len(book.motion)} rows proved, for the dimensions and inputs of "
+        "the file. The lines below and the statuses of Cycle follow the cells."
+    )
+    return [
+        ("How to use it", use),
+        *source,
+        ("Written by", f"Linkwork {version}; the sheet Linkwork contains its results"),
+        ("Units", f"lengths {units}"),
+        ("Names", names),
+        ("Rows", f"{count} values of the input, {solved} with a position"),
+        ("By Linkwork", evidence),
+        ("Iterations in every row", str(book.iterations.count)),
+    ]
 
 
-def _checks(book: Book, sheet: Any, columns: CycleColumns, row: int) -> int:
+def _checks(book: Book, sheet: Any, columns: dict[str, int], row: int) -> int:
     """Checks of the cells, as formulas."""
     style = book.style
     rows = f"{FIRST + 1}", f"{book.last}"
 
-    def whole(column: int) -> str:
-        letter = column_name(column)
+    def whole(key: str) -> str:
+        letter = column_name(columns[key])
         return f"{CYCLE}!{letter}{rows[0]}:{letter}{rows[1]}"
 
     solved = int(book.iterations.found.sum())
     lines: list[tuple[str, str, float, str]] = []
     if solved:
-        largest = f"=MAX({whole(columns.largest)})"
+        largest = f"=MAX({whole('difference')})"
         lines.append(("Largest relative difference", largest, 0.0, "result"))
-    closing = f'=COUNTIF({whole(columns.closes)},"yes")'
+    closing = f'=COUNTIF({whole("closes")},"yes")'
     lines.append(("Rows with a position", closing, solved, "result_count"))
-    proved = f'=COUNTIF({whole(columns.status)},"proved for*")'
+    proved = f'=COUNTIF({whole("status")},"proved for*")'
     certified = sum(statement(book, int(k)).startswith("proved for") for k in book.iterations.rows)
     lines.append(("Rows still proved", proved, certified, "result_count"))
     lines.append(("Changed cells", "=changes", 0, "result_count"))
@@ -269,7 +246,8 @@ def notices(book: Book) -> Iterator[str]:
     settled = [names.get(key, key) for key in book.traced.settled]
     if settled:
         yield f"{', '.join(settled)}: gear ratios keep the values of the file"
-    outputs = [name for name in book.motion.outputs if name not in book.closure.outputs]
+    keys = {quantity.key for quantity in book.closure.quantities}
+    outputs = [name for name in book.motion.outputs if f"output {name}" not in keys]
     if outputs:
         yield f"{', '.join(outputs)}: values on the sheet Linkwork only"
     held = int((book.iterations.found & ~book.iterations.live).sum())

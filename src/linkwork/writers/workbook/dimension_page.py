@@ -11,7 +11,7 @@ from linkwork.core.equations.model import Variable
 from linkwork.core.expression.tree import text
 from linkwork.core.foundation.arrays import Array
 from linkwork.core.results.quantity import Kind, Rate
-from linkwork.writers.formulas.closure_formulas import CellFormula, cell_number
+from linkwork.writers.formulas.closure_formulas import cell_number, of_radians
 from linkwork.writers.formulas.rate_formulas import dimension_kinds, rate_key
 from linkwork.writers.formulas.traced import Dimension
 from linkwork.writers.workbook.book import CYCLE, DIMENSIONS, FIRST, Book, cached, column_name
@@ -109,13 +109,22 @@ class _Page:
             self.sheet.write(self.row, column, head, self.book.style[look])
         self.row += 1
 
-    def _line(self, shown: str, unit: str, key: str, note: str) -> int:
-        """Write a line without its value; returns its row."""
-        row, name = self.row, self.book.names.cells[key]
+    def _line(
+        self, key: str, shown: str, unit: str, look: str, value: float | str, formula: str = "",
+        *, name: str = "", note: str = "",
+    ) -> int:  # fmt: skip
+        """Write a number or formula in a cell, which gets a new name if there is one; its row."""
+        row, style = self.row, self.book.style
+        if name:
+            self.book.names.claim(key, name)
         self.sheet.write(row, 0, shown)
-        self.sheet.write(row, 2, unit, self.book.style["unit_right"])
-        self.sheet.write(row, 3, name, self.book.style["code"])
-        self.sheet.write(row, _NOTE, note, self.book.style["note"])
+        if formula:
+            self.sheet.write_formula(row, 1, formula, style[look], value)
+        else:
+            self.sheet.write_number(row, 1, value, style[look])
+        self.sheet.write(row, 2, unit, style["unit_right"])
+        self.sheet.write(row, 3, self.book.names.of[key], style["code"])
+        self.sheet.write(row, _NOTE, note, style["note"])
         self.book.define(key, DIMENSIONS, f"$B${row + 1}")
         self.row += 1
         return row
@@ -139,18 +148,14 @@ class _Page:
         unit = {"dimensions": book.model.units.of(kind), "angles": book.unit("angle")}.get(
             dimension.kind, book.unit("length")
         )
-        row = self._line(dimension.name, unit, dimension.key, self._note(dimension))
-        if not dimension.live:
-            self.sheet.write_number(row, 1, dimension.value, book.style["fixed"])
-        elif dimension.formula is None:
-            self.sheet.write_number(row, 1, dimension.value, book.style["input"])
-        else:
-            formula = CellFormula(dimension.formula, book.model.equations.angle)
-            shown = book.text(formula)
-            self.sheet.write_formula(row, 1, shown, book.style["derived"], dimension.value)
-        used = dimension.live and dimension.key in book.used - set(book.traced.settled)
-        computed = dimension.formula is not None and dimension.live
-        self._watch(row, dimension.value, used=used, computed=computed)
+        look, formula = "input" if dimension.live else "fixed", ""
+        if dimension.formula is not None and dimension.live:
+            look = "derived"
+            formula = book.text(of_radians(dimension.formula, book.model.equations.angle))
+        key, note, value = dimension.key, self._note(dimension), dimension.value
+        row = self._line(key, dimension.name, unit, look, value, formula, note=note)
+        used = dimension.live and dimension.key in book.rates.used - set(book.traced.settled)
+        self._watch(row, value, used=used, computed=bool(formula))
 
     def _note(self, dimension: Dimension) -> str:
         if not dimension.live:
@@ -173,21 +178,17 @@ class _Page:
         self._section("Input: first value and step of the rows")
         for variable in inputs:
             values = book.motion.inputs[variable.name][book.iterations.rows]
-            table = input_table(values)
-            for part, word in enumerate(("from", "step")):
-                key = f"{word} {variable.symbol}"
-                if table is None:
-                    continue
-                book.names.claim(key, f"{variable.shown}_{word}")
-                row = self._line(
-                    f"{book.shown(variable)} {word}", book.unit(variable.kind), key, ""
-                )
-                self.sheet.write_number(row, 1, table[part], book.style["input"])
-                self.sheet.write_number(row, 4, table[part], book.style["solved"])
+            table, shown = input_table(values), book.shown(variable)
             if table is None:
-                note = f"{book.shown(variable)}: its values are in the rows"
+                note = f"{shown}: its values are in the rows"
                 self.sheet.write(self.row, 0, note, book.style["note"])
                 self.row += 1
+                continue
+            for word, value in zip(("from", "step"), table, strict=True):
+                key, unit = f"{word} {variable.symbol}", book.unit(variable.kind)
+                name = f"{variable.shown}_{word}"
+                row = self._line(key, f"{shown} {word}", unit, "input", value, name=name)
+                self.sheet.write_number(row, 4, value, book.style["solved"])
 
     def _speeds(self) -> None:
         """Write the speeds of the leading input and of the inputs that move with it."""
@@ -197,29 +198,27 @@ class _Page:
         self._section("Speed of the input, for the sheet Velocities")
         for k, variable in enumerate(book.model.equations.inputs):
             key = rate_key(variable.symbol, 1)
-            book.names.claim(key, f"{variable.shown}.velocity")
             unit = Rate.VELOCITY.unit(Kind(variable.kind), book.model.units, "")
             by = f"the derivatives by {book.shown(lead)}"
             note = "" if book.motion.speed else f"the file gives no speed: at 1 velocities are {by}"
-            row = self._line(book.shown(variable), unit, key, "" if k != number else note)
-            book.values[key] = book.speed * float(rates[k])
-            if k == number:
-                self.sheet.write_number(row, 1, book.speed, book.style["input"])
-            else:
-                formula = f"={self._ratio(variable)}"
-                self.sheet.write_formula(row, 1, formula, book.style["derived"], book.values[key])
+            leads = k == number
+            look, formula = ("input", "") if leads else ("derived", f"={self._ratio(variable)}")
+            value = book.values[key] = book.speed * float(rates[k])
+            name, note = f"{variable.shown}.velocity", note if leads else ""
+            shown = book.shown(variable)
+            self._line(key, shown, unit, look, value, formula, name=name, note=note)
 
     def _ratio(self, variable: Variable) -> str:
         """The speed of an input that moves with the leading one."""
         book = self.book
         changes = []
         for driven in (variable, book.leading):
-            step = book.names.cells.get(f"step {driven.symbol}")
+            step = book.names.of.get(f"step {driven.symbol}")
             if step is None:
                 letter = column_name(1 + book.model.equations.inputs.index(driven))
                 step = f"({CYCLE}!{letter}{book.last}-{CYCLE}!{letter}{FIRST + 1})"
             changes.append(f"RADIANS({step})" if book.scale(driven) != 1.0 else step)
-        speed = book.names.cells[rate_key(book.leading.symbol, 1)]
+        speed = book.names.of[rate_key(book.leading.symbol, 1)]
         return f"IF({changes[1]}=0,0,{speed}*{changes[0]}/{changes[1]})"
 
     def _estimates(self) -> None:
@@ -232,13 +231,12 @@ class _Page:
         for k, variable in enumerate(book.model.equations.unknowns):
             if not book.solved(k):
                 continue
-            key = f"start {variable.symbol}"
-            book.names.claim(key, f"{variable.shown}_start")
-            row = self._line(book.shown(variable), book.unit(variable.kind), key, "")
             value = float(book.model.equations.start[k] / book.scales[k])
             if len(live):
                 value = float(book.iterations.values[0][live[0], k])
-            self.sheet.write_number(row, 1, value, book.style["input"])
+            key, name = f"start {variable.symbol}", f"{variable.shown}_start"
+            unit = book.unit(variable.kind)
+            self._line(key, book.shown(variable), unit, "input", value, name=name)
 
     def _coefficients(self) -> None:
         book = self.book
@@ -247,17 +245,13 @@ class _Page:
             return
         self._section("Coefficients computed from them")
         for part in parts:
-            row = self._line(part.wanted, "", part.key, "")
-            value = cached(book.values[part.key])
-            self.sheet.write_formula(row, 1, book.text(part.formula), book.style["derived"], value)
+            value, formula = cached(book.values[part.key]), book.text(part.formula)
+            row = self._line(part.key, part.wanted, "", "derived", value, formula)
             if isinstance(value, float):
                 self._watch(row, value, computed=True)
 
     def _tolerance(self) -> None:
-        book = self.book
         self._section("When a row counts as closed")
-        book.names.claim("tolerance", "tolerance")
         note = "largest sum of squares of the equations of a closed row"
-        row = self._line("tolerance", "", "tolerance", note)
-        size = (_CLOSED * book.model.equations.length_scale) ** 2
-        self.sheet.write_number(row, 1, size, book.style["input"])
+        size = (_CLOSED * self.book.model.equations.length_scale) ** 2
+        self._line("tolerance", "tolerance", "", "input", size, name="tolerance", note=note)

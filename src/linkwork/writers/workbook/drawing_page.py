@@ -11,7 +11,7 @@ import numpy as np
 
 from linkwork.core.equations.compiling import coordinate_name
 from linkwork.writers.workbook.book import CYCLE, FIRST, Book, cached, chart_text, column_name
-from linkwork.writers.workbook.layout import print_on_one_page
+from linkwork.writers.workbook.layout import add_curve, print_on_one_page
 
 SHEET = "Drawing"
 _SIDE = 640  # size of the chart [pixels]
@@ -52,14 +52,12 @@ class _Page:
     def write(self) -> None:
         """Write the row number, its input, its points and the lines of the picture."""
         book, sheet, style = self.book, self.sheet, self.book.style
-        solved = np.flatnonzero(book.iterations.found)
-        self.shown = int(solved[len(solved) // 6])
         sheet.set_default_row(_ROW)  # explicit row height, since other defaults distort the chart
         sheet.set_column(0, 0, 18)
         sheet.set_column(1, 2, 14)
         sheet.write(0, 0, f"{book.model.description.name}: drawing", style["title"])
         sheet.write(2, 0, "row shown", style["head_left"])
-        sheet.write_number(2, 1, self.shown + 1, style["input"])
+        sheet.write_number(2, 1, book.row_shown + 1, style["input"])
         limits = {"validate": "integer", "criteria": "between", "minimum": 1}
         message = {"error_title": "No such row", "error_message": f"Rows are 1 to {book.count}."}
         sheet.data_validation(2, 1, 2, 1, {**limits, "maximum": book.count, **message})
@@ -79,7 +77,7 @@ class _Page:
         letter = column_name(self.columns[key])
         source = f"INDEX({CYCLE}!${letter}${FIRST + 1}:${letter}${self.book.last},row_shown)"
         formula = f"=IF(ISNUMBER({source}),{source},NA())"
-        value = float(self.book.over_rows(self.book.values[key])[self.shown])
+        value = float(self.book.over_rows(self.book.values[key])[self.book.row_shown])
         self.sheet.write_formula(row, column, formula, self.book.style["number"], cached(value))
 
     def _points(self, row: int) -> None:
@@ -102,7 +100,8 @@ class _Page:
             self._trace(chart, point)
         self.sheet.write(self.bottom - 1, 0, "lines of the picture", book.style["heading"])
         for line in self._lines():
-            self._line(chart, line)
+            if sum(point in self.place for point in line.points) > 1:
+                self._placed(chart, line.name, line.points, line.look)
         for circle in book.model_circles:
             self._circle(chart, *circle)
         self._ground(chart)
@@ -139,83 +138,60 @@ class _Page:
             look = {"line": {"color": "#5f6c7b", "width": 4.5}}
             yield _Line(strut.name, strut.between, look)
 
-    def _line(self, chart: Any, line: _Line) -> None:
-        known = [point for point in line.points if point in self.place]
-        if len(known) < 2:
-            return
-        self._placed(chart, line.name, known, {"name": line.name, **line.look})
-
     def _placed(self, chart: Any, name: str, points: Sequence[str], look: dict[str, Any]) -> None:
-        """A curve through points, listed below each other."""
-        if not points:
+        """A curve through those of the points that are on the sheet."""
+        known = [point for point in points if point in self.place]
+        corners = [[(f"={self._cell(p, k)}", self._value(p, k)) for k in (0, 1)] for p in known]
+        self._curve(chart, name, corners, look)
+
+    def _cell(self, point: str, k: int) -> str:
+        """The cell of a coordinate of a point."""
+        return f"{column_name(k + 1)}{self.place[point] + 1}"
+
+    def _value(self, point: str, k: int) -> float:
+        key = coordinate_name(point, "xy"[k])
+        return float(self.book.over_rows(self.book.values[key])[self.book.row_shown])
+
+    def _curve(
+        self, chart: Any, name: str, corners: list[list[tuple[str, float]]], look: dict[str, Any]
+    ) -> None:
+        """A curve through points given by formulas and values, listed below each other."""
+        if not corners:
             return
         first = self.bottom
-        for point in points:
+        for corner in corners:
             self.sheet.write(self.bottom, 0, name)
-            for column, axis in enumerate("xy", 1):
-                values = self.book.over_rows(self.book.values[coordinate_name(point, axis)])
-                formula = f"={column_name(column)}{self.place[point] + 1}"
-                look_of = self.book.style["number"]
-                value = cached(float(values[self.shown]))
-                self.sheet.write_formula(self.bottom, column, formula, look_of, value)
+            for column, (formula, value) in enumerate(corner, 1):
+                at = self.bottom, column
+                number = self.book.style["number"]
+                self.sheet.write_formula(*at, formula, number, cached(value))
             self.bottom += 1
-        self._series(chart, SHEET, (first, self.bottom - 1), (1, 2), look)
+        add_curve(chart, SHEET, (first, self.bottom - 1), (1, 2), {"name": name, **look})
         self.bottom += 1
 
     def _circle(self, chart: Any, name: str, center: str, radius: float) -> None:
         """The rim of a wheel, by points about its centre."""
-        first = self.bottom
-        x, y = (
-            self.book.over_rows(self.book.values[coordinate_name(center, axis)])[self.shown]
-            for axis in "xy"
-        )
-        for k in range(_ROUND + 1):
-            angle = 360 * k // _ROUND
-            self.sheet.write(self.bottom, 0, name)
+        corners = []
+        for angle in range(0, 361, 360 // _ROUND):
             turned = math.cos(math.radians(angle)), math.sin(math.radians(angle))
-            for column, function, coordinate, part in zip(
-                (1, 2), ("COS", "SIN"), (x, y), turned, strict=True
-            ):
-                origin = f"{column_name(column)}{self.place[center] + 1}"
-                formula = f"={origin}+{radius!r}*{function}(RADIANS({angle}))"
-                value = cached(float(coordinate) + radius * part)
-                look_of = self.book.style["number"]
-                self.sheet.write_formula(self.bottom, column, formula, look_of, value)
-            self.bottom += 1
-        look = {"line": {"color": "#7b8794", "width": 1.25}, "name": name}
-        self._series(chart, SHEET, (first, self.bottom - 1), (1, 2), look)
-        self.bottom += 1
+            corner = []
+            for k, function in enumerate(("COS", "SIN")):
+                formula = f"={self._cell(center, k)}+{radius!r}*{function}(RADIANS({angle}))"
+                corner.append((formula, self._value(center, k) + radius * turned[k]))
+            corners.append(corner)
+        self._curve(chart, name, corners, {"line": {"color": "#7b8794", "width": 1.25}})
 
     def _ground(self, chart: Any) -> None:
         """The fixed points as dark squares."""
-        known = [p for p in self.book.model.skeleton.fixed if p in self.place]
         dark = {"color": "#1f2933"}
         marker = {"type": "square", "size": 8, "fill": dark, "border": dark}
-        look = {"name": "ground", "line": {"none": True}, "marker": marker}
-        self._placed(chart, "ground", known, look)
+        look = {"line": {"none": True}, "marker": marker}
+        self._placed(chart, "ground", self.book.model.skeleton.fixed, look)
 
     def _trace(self, chart: Any, point: str) -> None:
-        columns = tuple(self.columns[coordinate_name(point, axis)] for axis in "xy")
+        x, y = (self.columns[coordinate_name(point, axis)] for axis in "xy")
         look = {"name": f"path of {point}", "line": {"color": "#d64545", "width": 1}}
-        self._series(chart, CYCLE, (FIRST, self.book.last - 1), columns, look)
-
-    def _series(
-        self,
-        chart: Any,
-        sheet: str,
-        rows: tuple[int, int],
-        columns: Sequence[int],
-        look: dict[str, Any],
-    ) -> None:
-        x, y = columns
-        chart.add_series(
-            {
-                "categories": [sheet, rows[0], x, rows[1], x],
-                "values": [sheet, rows[0], y, rows[1], y],
-                "marker": {"type": "none"},
-                **look,
-            }
-        )
+        add_curve(chart, CYCLE, (FIRST, self.book.last - 1), (x, y), look)
 
     def _box(self) -> tuple[float, float, float, float]:
         """A square around all rows: its corner, side and gridlines."""

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -13,7 +13,9 @@ from linkwork.core.foundation.arrays import Array
 from linkwork.core.foundation.names import GROUND
 from linkwork.core.mechanism.linkage import Linkage
 from linkwork.core.results.quantity import Kind
-from linkwork.writers.workbook.acting import NO, Act, Entry, Follower, Unknown, computed
+from linkwork.writers.formulas.closure_formulas import cell_text
+from linkwork.writers.formulas.traced import LinearForm, Trace, TracedNumber, forms_of
+from linkwork.writers.workbook.acting import Act, Follower, Unknown
 from linkwork.writers.workbook.book import CYCLE, FIRST, FORCES, Book, cached, column_name
 from linkwork.writers.workbook.force_page import ForceColumns
 from linkwork.writers.workbook.layout import print_on_one_page
@@ -39,16 +41,17 @@ class _Page:
     linkage: Linkage
     columns: ForceColumns
     cycle: dict[str, int]
-    place: dict[str, int] = field(default_factory=dict)
     row: int = 3
 
     def __post_init__(self) -> None:
-        solved = np.flatnonzero(self.book.iterations.found)
-        self.shown = int(solved[len(solved) // 6])
         self.bodies = [link for link in self.linkage.links if link != GROUND]
         units = self.book.model.units
         self.length, force = units.of(Kind.LENGTH), units.of(Kind.FORCE)
         self.sums = tuple(zip(_ROWS, (force, force, units.of(Kind.MOMENT)), strict=True))
+        self.trace, self.names = Trace(), dict(self.book.names.of)
+        self.at: dict[str, Any] = {}
+        self.along: dict[str, Any] = {}
+        self.way: dict[str, Any] = {}
 
     def write(self) -> None:
         """Write points, lines, loads, the linear equations, and the free bodies."""
@@ -58,7 +61,7 @@ class _Page:
             sheet.set_column(column, column, width)
         sheet.write(1, 0, "The row is chosen on the sheet Drawing.", book.style["note"])
         sheet.write(2, 0, "row shown", book.style["head_left"])
-        sheet.write_formula(2, 1, "=row_shown", book.style["count"], self.shown + 1)
+        sheet.write_formula(2, 1, "=row_shown", book.style["count"], book.row_shown + 1)
         self._points()
         self._lines()
         reactions = self._reactions()
@@ -72,26 +75,32 @@ class _Page:
         print_on_one_page(sheet, tall=0)
 
     def _reactions(self) -> Reactions:
-        cells = {
-            key: Entry(name, self.book.values[key])
-            for key, name in self.book.names.cells.items()
-            if key in self.book.values and np.ndim(self.book.values[key]) == 0
-        }
-        reactions = Reactions(self.book.model, self.linkage, self.along, self.way, cells)
+        def number(key: str) -> Any:
+            return self._named(key, float(self.book.values[key]))
+
+        reactions = Reactions(self.book.model, self.linkage, self.along, self.way, number)
         join_links(reactions)
         return reactions
 
+    def _named(self, name: str, value: float) -> Any:
+        """A number with a name in formulas."""
+        return self.trace.number(value, LinearForm.named(name))
+
+    def _cell(self, row: int, column: int, value: float) -> Any:
+        """The number in a cell."""
+        address = f"${column_name(column)}${row + 1}"
+        self.names[address] = address
+        return self._named(address, value)
+
     # What is picked from other sheets
 
-    def _pick(self, sheet: str, column: int, value: float, at: tuple[int, int]) -> Entry:
-        letter = column_name(column)
-        area = f"{sheet}!${letter}${FIRST + 1}:${letter}${self.book.last}"
-        style = self.book.style["number"]
-        self.sheet.write_formula(*at, f"=INDEX({area},row_shown)", style, cached(value))
-        return Entry(f"${column_name(at[1])}${at[0] + 1}", value)
-
-    def _value(self, key: str) -> float:
-        return float(self.book.over_rows(self.book.values[key])[self.shown])
+    def _pick(self, key: str, column: int) -> Any:
+        """Write the number of a quantity in the row that is shown."""
+        sheet, of = (CYCLE, self.cycle) if key in self.cycle else (FORCES, self.columns.of)
+        area = f"{sheet}!$#${FIRST + 1}:$#${self.book.last}".replace("#", column_name(of[key]))
+        value = float(self.book.over_rows(self.book.values[key])[self.book.row_shown])
+        self._formula(self.row, column, f"INDEX({area},row_shown)", value)
+        return self._cell(self.row, column, value)
 
     def _heads(self, first: str, *titles: tuple[str, str]) -> None:
         """A line of headings, and one of their units if there are any."""
@@ -109,15 +118,10 @@ class _Page:
 
     def _points(self) -> None:
         self._heads("point", *zip("xy", [self.length] * 2, strict=True))
-        self.at: dict[str, tuple[Entry, Entry]] = {}
         for point in self.book.closure.points:
             self.sheet.write(self.row, 0, point)
-            keys = [coordinate_name(point, axis) for axis in "xy"]
-            entries = [
-                self._pick(CYCLE, self.cycle[key], self._value(key), (self.row, column))
-                for column, key in enumerate(keys, start=1)
-            ]
-            self.at[point] = (entries[0], entries[1])
+            x, y = (self._pick(coordinate_name(point, a), k) for k, a in enumerate("xy", start=1))
+            self.at[point] = x + 1j * y
             self.row += 1
 
     def _lines(self) -> None:
@@ -128,43 +132,25 @@ class _Page:
         lines = {name: line for name, line in candidates.items() if line}
         if lines:
             self._heads("line", ("along x", ""), ("along y", ""))
-        self.along: dict[str, tuple[Entry, Entry]] = {}
         for name, (start, end) in lines.items():
-            ends = self._coordinates({"a": start, "b": end})
-            span = "hypot(bx-ax, by-ay)"
-            self.along[name] = self._vector(name, 1, (f"(bx-ax)/{span}", f"(by-ay)/{span}"), ends)
+            along = self.at[end] - self.at[start]
+            self.along[name] = self._vector(name, 1, along / abs(along))
             self.row += 1
-        self.way: dict[str, tuple[Entry, Entry]] = {}
-        for k, contact in enumerate(contacts_of(self.linkage)):
-            if not k:
-                self._heads(
-                    "contact", ("x", self.length), ("y", self.length), ("along x", ""),
-                    ("along y", ""),
-                )  # fmt: skip
-            names = self._coordinates(contact.points)
-            self.at[contact.name] = self._vector(contact.name, 1, contact.place, names)
-            self.way[contact.name] = self._vector(contact.name, 3, contact.way, names)
+        contacts = list(contacts_of(self.linkage, self.at))
+        if contacts:
+            places = ("x", self.length), ("y", self.length)
+            self._heads("contact", *places, ("along x", ""), ("along y", ""))
+        for contact in contacts:
+            self.at[contact.name] = self._vector(contact.name, 1, contact.place)
+            self.way[contact.name] = self._vector(contact.name, 3, contact.way)
             self.row += 1
 
-    def _coordinates(self, points: dict[str, str]) -> dict[str, Entry]:
-        """The coordinates of points as names of formulas: ``ax``, ``ay`` of ``a``."""
-        return {
-            f"{letter}{axis}": entry
-            for letter, point in points.items()
-            for axis, entry in zip("xy", self.at[point], strict=True)
-        }
-
-    def _vector(
-        self, title: str, column: int, texts: tuple[str, str], names: dict[str, Entry]
-    ) -> tuple[Entry, Entry]:
-        """Two cells of formulas, from this column on."""
+    def _vector(self, title: str, column: int, z: Any) -> Any:
+        """Two cells with the components of a vector, from this column on; the vector of them."""
         self.sheet.write(self.row, 0, title)
-        entries = []
-        for k, text in enumerate(texts, start=column):
-            entry = computed(text, names)
-            self._write(self.row, k, entry)
-            entries.append(Entry(f"${column_name(k)}${self.row + 1}", entry.value))
-        return entries[0], entries[1]
+        return self._write(self.row, column, z.real) + 1j * self._write(
+            self.row, column + 1, z.imag
+        )
 
     # Loads
 
@@ -177,47 +163,34 @@ class _Page:
             keys += [f"{link} center x", f"{link} center y"]
             name = f"mass of {link}"
             x, y, moment, px, py = self._picked(name, keys)
-            self.at[name] = (px, py)
-            yield name, Act(link, name, x, y, moment)
+            self.at[name] = px + 1j * py
+            yield name, Act(link, name, x + 1j * y, moment)
         for point, on_link, kx, ky in self.columns.forces:
             x, y = self._picked(f"load on {point}", [kx, ky])
-            yield f"load on {point}", Act(on_link or carriers[point][0], point, x, y)
+            yield f"load on {point}", Act(on_link or carriers[point][0], point, x + 1j * y)
         for link, key in self.columns.torques:
             (moment,) = self._picked(f"torque on {link}", [key], first=3)
             yield f"torque on {link}", Act(link, "", moment=moment)
 
-    def _picked(self, name: str, keys: list[str], first: int = 1) -> list[Entry]:
+    def _picked(self, name: str, keys: list[str], first: int = 1) -> list[Any]:
         self.sheet.write(self.row, 0, name)
-        entries = [
-            self._pick(FORCES, self.columns.of[key], self._value(key), (self.row, column))
-            for column, key in enumerate(keys, start=first)
-        ]
+        entries = [self._pick(key, column) for column, key in enumerate(keys, start=first)]
         self.row += 1
         return entries
 
     # Equations
 
-    def _moment(self, link: str, act: Act) -> Entry:
-        """The moment of an act about the first point of a link."""
-        if not act.point:
-            return act.moment
-        (px, py), (cx, cy) = self.at[act.point], self.at[self.linkage.links[link][0]]
-        value = (px.value - cx.value) * act.y.value - (py.value - cy.value) * act.x.value
-        text = f"({px.text}-{cx.text})*({act.y.text})-({py.text}-{cy.text})*({act.x.text})"
-        if act.moment != NO:
-            text = f"{text}+({act.moment.text})"
-        return Entry(text, value + act.moment.value)
-
-    def _parts(self, link: str, acts: Iterable[Act]) -> tuple[Entry, Entry, Entry]:
-        """The sums of forces and moments of acts on a link."""
-        terms = [(act.x, act.y, self._moment(link, act)) for act in acts if act.link == link]
-        sums = []
-        for part in range(3):
-            entries = [each[part] for each in terms if each[part] != NO]
-            text = "+".join(f"({entry.text})" for entry in entries) if len(entries) > 1 else ""
-            total = Entry(text, sum(entry.value for entry in entries))
-            sums.append(total if text else entries[0] if entries else NO)
-        return sums[0], sums[1], sums[2]
+    def _parts(self, link: str, acts: Iterable[Act]) -> tuple[Any, Any, Any]:
+        """The sums of forces and moments of acts on a link, about its first point."""
+        force, moment = self.trace.plain(0.0), self.trace.plain(0.0)
+        origin = self.at[self.linkage.links[link][0]]
+        for act in acts:
+            if act.link == link:
+                force, moment = force + act.force, moment + act.moment
+                if act.point:
+                    arm = self.at[act.point] - origin
+                    moment += (arm.conjugate() * act.force).imag
+        return force.real, force.imag, moment
 
     def _system(self, reactions: Reactions, loads: list[tuple[str, Act]]) -> None:
         """The matrix, the loads, and the solution."""
@@ -240,7 +213,7 @@ class _Page:
             for part, word in enumerate(_ROWS):
                 self.sheet.write(self.row, 0, f"{word} on {link}")
                 for column, entries in enumerate(sums):
-                    table[3 * k + part, column] = entries[part].value
+                    table[3 * k + part, column] = _value_of(entries[part])
                     self._write(self.row, column + 1, entries[part])
                 self.row += 1
         self._solve(reactions, table, top)
@@ -255,12 +228,9 @@ class _Page:
         sizes = []
         for amount in followers:
             which = [unknown.name for unknown in unknowns].index(amount.of)
-            text = self._row_of_solution(which, size, top, size + 1)
-            entry = computed(
-                amount.size, {**amount.names, "t": Entry(text, plain[which])}, self.linkage.angle
-            )
-            sizes.append(entry)
-        total = right + table[:, size + 1 :] @ [entry.value for entry in sizes]
+            self.names[amount.of] = f"({self._row_of_solution(which, size, top, size + 1)})"
+            sizes.append(amount.size(self._named(amount.of, plain[which])))
+        total = right + table[:, size + 1 :] @ [_value_of(entry) for entry in sizes]
         side = size + 1
         if followers:
             side = size + len(followers) + 2
@@ -271,36 +241,34 @@ class _Page:
                     f"$B${first + size + k + 1}*${column_name(size + 2 + k)}{row}"
                     for k in range(len(followers))
                 ]
-                self._write(row - 1, side, Entry("+".join(terms), value))
+                self._formula(row - 1, side, "+".join(terms), value)
         solution = _solution(matrix, total)
         self._heads("reaction", ("value", ""))
         self.sheet.write(self.row - 1, 2, "unit", self.book.style["head_indented"])
         assert self.row == first
-        self.solved: dict[str, Entry] = {}
+        self.solved: dict[str, Any] = {}
         for k, unknown in enumerate(unknowns):
-            entry = Entry(self._row_of_solution(k, size, top, side), float(solution[k]))
-            self._result(unknown.name, unknown.unit, entry)
+            text = self._row_of_solution(k, size, top, side)
+            self._formula(self.row, 1, text, float(solution[k]))
+            self._result(unknown.name, unknown.unit, self._cell(self.row, 1, float(solution[k])))
         for amount, entry in zip(followers, sizes, strict=True):
-            self._result(amount.name, amount.unit, entry)
+            self._result(amount.name, amount.unit, self._write(self.row, 1, entry))
         for reading in reactions.readings:
-            names = {
-                letter: self.solved[name] for letter, name in zip("ab", reading.of, strict=False)
-            }
-            self._result(
-                reading.name, reading.unit, computed(reading.text, {**names, **reading.names})
-            )
+            parts = (self.solved[name] * weight for name, weight in reading.weights.items())
+            entry = sum(parts, self.trace.plain(0.0))
+            self._result(reading.name, reading.unit, self._write(self.row, 1, entry))
         units = {amount.name: amount.unit for amount in unknowns}
         for key, name in self.columns.efforts.items():
             self.sheet.write(self.row, 0, f"{name} by virtual work")
-            self._pick(FORCES, self.columns.of[key], self._value(key), (self.row, 1))
+            self._pick(key, 1)
             self.sheet.write(self.row, 2, units[name], self.book.style["unit_right"])
             self.row += 1
 
-    def _result(self, name: str, unit: str, entry: Entry) -> None:
+    def _result(self, name: str, unit: str, number: Any) -> None:
+        """The name and unit of a number in the second column."""
         self.sheet.write(self.row, 0, name)
-        self._write(self.row, 1, entry)
         self.sheet.write(self.row, 2, unit, self.book.style["unit_right"])
-        self.solved[name] = Entry(f"$B${self.row + 1}", entry.value)
+        self.solved[name] = number
         self.row += 1
 
     @staticmethod
@@ -312,13 +280,18 @@ class _Page:
         unit = ";".join("1" if j == k else "0" for j in range(size))
         return f"-SUMPRODUCT(MMULT(MINVERSE({area}),{right}),{{{unit}}})"
 
-    def _write(self, row: int, column: int, entry: Entry) -> None:
-        style = self.book.style
-        if entry.text in ("0", "1"):
-            self.sheet.write_number(row, column, entry.value, style["count"])
+    def _write(self, row: int, column: int, number: Any) -> Any:
+        """Write a number or its formula; the number in this cell."""
+        form, value = forms_of(number)[0], _value_of(number)
+        if form.fixed:
+            self.sheet.write_number(row, column, value, self.book.style["count"])
         else:
-            known = cached(entry.value)
-            self.sheet.write_formula(row, column, f"={entry.text}", style["number"], known)
+            self._formula(row, column, cell_text(form.node, self.names), value)
+        return self._cell(row, column, value)
+
+    def _formula(self, row: int, column: int, text: str, value: float) -> None:
+        look = self.book.style["number"]
+        self.sheet.write_formula(row, column, f"={text}", look, cached(value))
 
     def _free_bodies(self, reactions: Reactions, loads: list[tuple[str, Act]]) -> None:
         """All forces on every link, and their sums, which are zero."""
@@ -331,10 +304,7 @@ class _Page:
                 if all(act.link != link for act in force.acts):
                     continue
                 solved = self.solved[force.name]
-                entries = [
-                    Entry(f"{solved.text}*({entry.text})", solved.value * entry.value)
-                    for entry in self._parts(link, force.acts)
-                ]
+                entries = [solved * entry for entry in self._parts(link, force.acts)]
                 sums += self._line(force.name, entries)
             for name, act in loads:
                 if act.link == link:
@@ -347,13 +317,18 @@ class _Page:
                 self.sheet.write_formula(self.row, column + 1, text, style["small"], known)
             self.row += 1
 
-    def _line(self, name: str, entries: Sequence[Entry]) -> Array:
+    def _line(self, name: str, entries: Sequence[Any]) -> Array:
         """A line of a free body; its values."""
         self.sheet.write(self.row, 0, name)
         for column, entry in enumerate(entries):
             self._write(self.row, column + 1, entry)
         self.row += 1
-        return np.array([entry.value for entry in entries])
+        return np.array([_value_of(entry) for entry in entries])
+
+
+def _value_of(number: Any) -> float:
+    """The value of a real number, traced or plain."""
+    return float(np.real(number.values[0])) if isinstance(number, TracedNumber) else float(number)
 
 
 def _solution(matrix: Array, right: Array) -> Array:

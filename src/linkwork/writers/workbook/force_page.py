@@ -9,18 +9,17 @@ from typing import Any
 from linkwork.core.equations.compiling import coordinate_name
 from linkwork.core.equations.model import Variable
 from linkwork.core.expression.grammar import parse
-from linkwork.core.expression.tree import Name, names_in
+from linkwork.core.expression.tree import Name, Node, NumberNode, names_in
 from linkwork.core.foundation.names import GROUND, canonical
 from linkwork.core.results.quantity import Kind
 from linkwork.forces.reactions.drives import effort_kind, effort_name
-from linkwork.writers.formulas.closure_formulas import CellFormula
+from linkwork.writers.formulas.closure_formulas import of_radians, rebuilt
 from linkwork.writers.formulas.rate_formulas import rate_key
-from linkwork.writers.workbook.book import FIRST, FORCES, Book, column_name
-from linkwork.writers.workbook.layout import print_table
+from linkwork.writers.workbook.book import FORCES, Book
+from linkwork.writers.workbook.layout import Table
 from linkwork.writers.workbook.load_cells import LoadCells
 from linkwork.writers.workbook.rates import partial_key
 
-_WIDTH = 14
 _SPINS = ((1, "ω", "rad/s"), (2, "α", "rad/s²"))
 _SPAN = "((x1-x0)^2+(y1-y0)^2)"
 
@@ -40,30 +39,23 @@ class ForceColumns:
 
 def write_forces(book: Book, sheet: Any, cells: LoadCells) -> ForceColumns:
     """Write the columns; ``Equilibrium`` takes them from there."""
-    page = _Page(book, sheet, cells)
+    page = _Page(book, Table(book, FORCES, sheet), cells)
     page.write()
+    page.columns.of = page.table.of
     return page.columns
 
 
 @dataclass
 class _Page:
     book: Book
-    sheet: Any
+    table: Table
     cells: LoadCells
     columns: ForceColumns = field(default_factory=ForceColumns)
-    groups: list[tuple[str, int, int]] = field(default_factory=list)
-    end: int = 1
-    work: list[str] = field(default_factory=list)
+    work: list[tuple[str, str]] = field(default_factory=list)
 
     def write(self) -> None:
         """Write directions, masses, loads and springs, then the sum of virtual work."""
-        book, sheet = self.book, self.sheet
-        book.title(sheet, "forces")
-        book.row_numbers(sheet)
-        for variable in book.model.equations.inputs:
-            book.head(sheet, self.end, book.shown(variable), book.unit(variable.kind))
-            book.column(sheet, self.end, CellFormula(Name(variable.symbol)), "number")
-            self.end += 1
+        self.table.inputs()
         linkage = self.cells.linkage
         turned = [load.turns_with for load in linkage.loads if load.turns_with]
         loaded = [load.link for load in linkage.loads if load.torque is not None and load.link]
@@ -71,8 +63,8 @@ class _Page:
             self._turning(link)
         for link in self.cells.masses:
             self._mass(link)
-        for k, (load, parts, names) in enumerate(self.cells.loads, start=1):
-            self._load(k, load, parts, names)
+        for k, (load, parts) in enumerate(self.cells.loads, start=1):
+            self._load(k, load, parts)
         for spring in self.cells.pulling:
             if spring.links is None:
                 self._spring(spring.name, *spring.between)
@@ -82,34 +74,23 @@ class _Page:
         whole = "effort = -Σ (force · velocity + torque · angular velocity) / speed of the input"
         alone = "effort = -Σ (force · rate + torque · angular rate by this input alone)"
         note = f"{alone if self.each else whole}, with the forces of inertia"
-        sheet.write(1, 0, note, book.style["note"])
-        book.group_heads(sheet, self.groups)
-        print_table(sheet, [6, *[_WIDTH] * (self.end - 1)], 2, book.last - 1)
-        sheet.freeze_panes(FIRST, 2)
+        self.table.finish("forces", note, 2)
 
     def _add(self, key: str, title: str, unit: str, text: str, names: Mapping[str, str]) -> str:
-        """A column of a formula; ``names`` are the keys of its names."""
-        return self._column(key, title, unit, CellFormula(parse(text, comparing=True)), names)
+        """A column of a formula; ``names`` are the keys of its names, 0 if they have no cells."""
+        return self._column(key, title, unit, parse(text, comparing=True), names)
 
     def _column(
-        self, key: str, title: str, unit: str, formula: CellFormula, names: Mapping[str, str]
+        self, key: str, title: str, unit: str, formula: Node, names: Mapping[str, str]
     ) -> str:
-        book = self.book
-        book.names.claim(key, key.replace(" ", "_"))
-        book.define(key, FORCES, f"${column_name(self.end)}1")
-        book.head(self.sheet, self.end, title, unit)
-        cells = {name: book.names.cells[key_of] for name, key_of in names.items()}
-        values = formula.value({**book.values, **{n: book.values[k] for n, k in names.items()}})
-        values = book.over_rows(values)
-        shown = book.text(formula, **cells)
-        for k, value in enumerate(values.tolist()):
-            if any(True for _ in names_in(formula.node)):
-                book.put(self.sheet, k, self.end, shown, "number", value)
-            else:
-                self.sheet.write_number(FIRST + k, self.end, value, book.style["number"])
-        book.values[key] = values
-        self.columns.of[key] = self.end
-        self.end += 1
+        known = {name: used for name, used in names.items() if used in self.book.values}
+        still = names.keys() - known.keys()
+
+        def at_rest(part: Node) -> Node:
+            return NumberNode(0.0) if isinstance(part, Name) and part.name in still else part
+
+        self.book.names.claim(key, key.replace(" ", "_"))
+        self.table.formula(title, unit, rebuilt(formula, at_rest), key=key, names=known)
         return key
 
     def _moving(self, key: str, title: str, unit: str, text: str, names: Mapping[str, str]) -> None:
@@ -117,9 +98,17 @@ class _Page:
         self._add(key, title, unit, text, names)
         for which in self.each:
             names_by = {name: self._by(used, which) for name, used in names.items()}
-            self._add(
-                partial_key(key, which), f"{title} by {self.book.shown(which)}", "", text, names_by
-            )
+            title_by = f"{title} by {self.book.shown(which)}"
+            self._add(partial_key(key, which), title_by, "", text, names_by)
+
+    def _pair(
+        self, key: str, title: str, unit: str, texts: tuple[str, str], names: Mapping[str, str]
+    ) -> list[str]:
+        """Columns of the x and y components of a vector."""
+        return [
+            self._add(f"{key} {axis}", f"{title} {axis}", unit, text, names)
+            for axis, text in zip("xy", texts, strict=True)
+        ]
 
     def _by(self, key: str, which: Variable) -> str:
         """The key of a rate by one input alone; other keys stay."""
@@ -132,158 +121,109 @@ class _Page:
         inputs = self.book.model.equations.inputs
         return inputs if len(inputs) > 1 else ()
 
-    def _rates(self, point: str, order: int, stem: str) -> tuple[dict[str, str], dict[str, str]]:
-        """Names for the rates of a point that have cells, and "0" for the rest."""
-        rates, still = {}, {}
-        for axis in "xy":
-            key = rate_key(coordinate_name(point, axis), order)
-            if key in self.book.values:
-                rates[f"{stem}{axis}"] = key
-            else:
-                still[f"{stem}{axis}"] = "0"
-        return rates, still
+    @staticmethod
+    def _rates(point: str, order: int, stem: str) -> dict[str, str]:
+        """The keys of the rates of a point, for the names ``stem`` x and y."""
+        return {f"{stem}{axis}": rate_key(coordinate_name(point, axis), order) for axis in "xy"}
 
-    def _formula(self, text: str, *points: tuple[str, int, str]) -> tuple[str, dict[str, str]]:
-        """A formula of rates of points, zeros written as 0."""
-        names: dict[str, str] = {}
-        for point, order, stem in points:
-            rates, still = self._rates(point, order, stem)
-            names |= rates
-            # points at rest have no cells of rates
-            for name, zero in still.items():
-                text = text.replace(name, zero)
-        return text, names
+    @staticmethod
+    def _ends(first: str, second: str) -> dict[str, str]:
+        """The keys of the coordinates of two points: ``x0``, ``y0``, ``x1``, ``y1``."""
+        ends = (("0", first), ("1", second))
+        return {f"{axis}{k}": coordinate_name(point, axis) for k, point in ends for axis in "xy"}
 
-    def _place(self, point: str, number: str) -> dict[str, str]:
-        return {f"{axis}{number}": coordinate_name(point, axis) for axis in "xy"}
+    @staticmethod
+    def _direction(link: str) -> dict[str, str]:
+        return {f"u{axis}": f"{link} direction {axis}" for axis in "xy"}
 
     def _turning(self, link: str) -> None:
         """The direction of a link and its rates."""
         first, *others = self.cells.linkage.links[link]
-        start = self.end
+        self.table.group = f"Direction of {link}"
+        key = f"{link} direction"
         if others:
-            names = {**self._place(first, "0"), **self._place(others[0], "1")}
-            for axis in "xy":
-                text = f"({axis}1-{axis}0)/sqrt({_SPAN})"
-                self._add(f"{link} direction {axis}", f"direction {axis}", "", text, names)
-            directions = {f"u{axis}": f"{link} direction {axis}" for axis in "xy"}
-            for order, word, per in _SPINS:
-                text = f"(ux*(by-ay)-uy*(bx-ax))/sqrt({_SPAN})"
-                text, rates = self._formula(text, (first, order, "a"), (others[0], order, "b"))
-                add = self._moving if order == 1 else self._add
-                add(f"{link} spin {order}", word, per, text, {**names, **directions, **rates})
-        else:
-            self._turning_wheel(link)
-        self.groups.append((f"Direction of {link}", start, self.end - 1))
-
-    def _turning_wheel(self, link: str) -> None:
-        """The direction of a link with one point: that of its angle, if it turns."""
-        symbol = canonical(link)
-        names = {"q": symbol} if symbol in self.book.values else {}
-        for axis, turned, still in (("x", "cos(q)", "1"), ("y", "sin(q)", "0")):
-            formula = CellFormula(parse(turned if names else still), self.cells.linkage.angle)
-            self._column(f"{link} direction {axis}", f"direction {axis}", "", formula, names)
+            names = self._ends(first, others[0])
+            along = f"(x1-x0)/sqrt({_SPAN})", f"(y1-y0)/sqrt({_SPAN})"
+            self._pair(key, "direction", "", along, names)
+            names |= self._direction(link)
+        else:  # that of its angle, if it turns
+            for axis, text in (("x", "cos(q)"), ("y", "sin(q)")):
+                formula = of_radians(parse(text), self.cells.linkage.angle)
+                names = {"q": canonical(link)}
+                self._column(f"{key} {axis}", f"direction {axis}", "", formula, names)
         for order, word, per in _SPINS:
-            key = rate_key(symbol, order)
-            angle = {"q": key} if key in self.book.values else {}
+            if others:
+                text = f"(ux*(by-ay)-uy*(bx-ax))/sqrt({_SPAN})"
+                names |= self._rates(first, order, "a") | self._rates(others[0], order, "b")
+            else:
+                text, names = "q", {"q": rate_key(canonical(link), order)}
             add = self._moving if order == 1 else self._add
-            add(f"{link} spin {order}", word, per, "q" if angle else "0", angle)
+            add(f"{link} spin {order}", word, per, text, names)
 
     def _mass(self, link: str) -> None:
         """Weight and inertia of a link, and their virtual work."""
         linkage = self.cells.linkage
         first = linkage.links[link][0]
-        start, length, force = self.end, linkage.length, linkage.force
+        self.table.group = f"Mass of {link}"
+        length, force = linkage.length, linkage.force
         names = {
-            "ux": f"{link} direction x", "uy": f"{link} direction y",
+            **self._direction(link), **self._ends(first, linkage.links[link][-1]),
             "w": f"{link} spin 1", "al": f"{link} spin 2", "m": f"mass {link}",
             "k": "force unit", "on": "moving", "gx": "gravity x", "gy": "gravity y",
+            "cx": f"center {link} x", "cy": f"center {link} y", "j": f"inertia {link}",
+            **self._rates(first, 1, "v"), **self._rates(first, 2, "s"),
         }  # fmt: skip
+        inertia = "j"
         if linkage.masses[link].shape is not None:
-            second = linkage.links[link][1]
-            ends = {**self._place(first, "0"), **self._place(second, "1")}
-            self._add(f"{link} half", "half length", length, f"sqrt({_SPAN})/2", ends)
-            names["cx"] = f"{link} half"
-            cx, cy, inertia = "cx", "0", "m*cx^2/3"
-        else:
-            names |= {f"c{axis}": f"center {link} {axis}" for axis in "xy"}
-            names["j"] = f"inertia {link}"
-            cx, cy, inertia = "cx", "cy", "j"
-        arm = {"x": f"({cx}*ux-{cy}*uy)", "y": f"({cx}*uy+{cy}*ux)"}
-        origin = self._place(first, "0")
-        for axis in "xy":
-            text = f"{axis}0+{arm[axis]}"
-            self._add(f"{link} center {axis}", f"center {axis}", length, text, {**names, **origin})
-        speeds = {"x": f"vx-w*{arm['y']}", "y": f"vy+w*{arm['x']}"}
-        bends = {
-            "x": f"sx-al*{arm['y']}-w^2*{arm['x']}", "y": f"sy+al*{arm['x']}-w^2*{arm['y']}",
-        }  # fmt: skip
+            ends = self._ends(first, linkage.links[link][1])
+            half = self._add(f"{link} half", "half length", length, f"sqrt({_SPAN})/2", ends)
+            names |= {"cx": half, "cy": "", "j": ""}
+            inertia = "m*cx^2/3"
+        x, y = "(cx*ux-cy*uy)", "(cx*uy+cy*ux)"
         # v = v₀ + iω r and a = a₀ + (iα - ω²) r, r the arm from the first point
-        for axis in "xy":
-            text, rates = self._formula(speeds[axis], (first, 1, "v"))
-            key = f"{link} speed {axis}"
-            self._moving(key, f"velocity {axis}", f"{length}/s", text, {**names, **rates})
-        for axis in "xy":
-            text = f"k*m*(g{axis}-on*({bends[axis]}))"
-            text, rates = self._formula(text, (first, 2, "s"))
-            self._add(f"{link} force {axis}", f"force {axis}", force, text, {**names, **rates})
+        self._pair(f"{link} center", "center", length, (f"x0+{x}", f"y0+{y}"), names)
+        for axis, text in (("x", f"vx-w*{y}"), ("y", f"vy+w*{x}")):
+            self._moving(f"{link} speed {axis}", f"velocity {axis}", f"{length}/s", text, names)
+        bends = f"sx-al*{y}-w^2*{x}", f"sy+al*{x}-w^2*{y}"
+        pull = f"k*m*(gx-on*({bends[0]}))", f"k*m*(gy-on*({bends[1]}))"
+        self._pair(f"{link} force", "force", force, pull, names)
         torque = f"-k*on*({inertia})*al"
         self._add(f"{link} torque", "torque", f"{force}·{length}", torque, names)
-        self.work += [f"{link} force {axis}*{link} speed {axis}" for axis in "xy"]
-        self.work.append(f"{link} torque*{link} spin 1")
+        self.work += [(f"{link} force {axis}", f"{link} speed {axis}") for axis in "xy"]
+        self.work.append((f"{link} torque", f"{link} spin 1"))
         self.columns.masses.append(link)
-        self.groups.append((f"Mass of {link}", start, self.end - 1))
 
-    def _load(
-        self, k: int, load: Any, parts: tuple[CellFormula, ...], names: Mapping[str, str]
-    ) -> None:
-        linkage, start = self.cells.linkage, self.end
-        cells = dict(names)
-        if any(node.name == "t" for part in parts for node in names_in(part.node)):
-            cells["t"] = self._time()
+    def _load(self, k: int, load: Any, parts: tuple[Node, ...]) -> None:
+        linkage = self.cells.linkage
+        self.table.group = load.label.capitalize()
+        if any(node.name == "time" for part in parts for node in names_in(part)):
+            self._time()
         if load.torque is not None:
-            key = self._part(
-                f"load {k}", "torque", f"{linkage.force}·{linkage.length}", parts[0], cells, 1
-            )
+            unit = f"{linkage.force}·{linkage.length}"
+            key = self._column(f"load {k}", "torque", unit, parts[0], {})
             self.columns.torques.append((load.link, key))
-            self.work.append(f"{key}*{load.link} spin 1")
+            self.work.append((key, f"{load.link} spin 1"))
         else:
             keys = [
-                self._part(f"load {k} force {axis}", f"force {axis}", linkage.force, part, cells, n)
-                for n, (axis, part) in enumerate(zip("xy", parts, strict=True), start=1)
+                self._column(f"load {k} force {axis}", f"force {axis}", linkage.force, part, {})
+                for axis, part in zip("xy", parts, strict=True)
             ]
             if load.turns_with is not None:
                 link = load.turns_with
-                along = {"ux": f"{link} direction x", "uy": f"{link} direction y"}
-                along |= {"fx": keys[0], "fy": keys[1]}
-                keys = [
-                    self._add(
-                        f"load {k} turned {axis}", f"on ground {axis}", linkage.force, text, along
-                    )
-                    for axis, text in (("x", "fx*ux-fy*uy"), ("y", "fx*uy+fy*ux"))
-                ]
+                along = {**self._direction(link), "fx": keys[0], "fy": keys[1]}
+                texts = "fx*ux-fy*uy", "fx*uy+fy*ux"
+                keys = self._pair(f"load {k} turned", "on ground", linkage.force, texts, along)
             self._push(load.point, load.link, keys[0], keys[1])
-        self.groups.append((load.label.capitalize(), start, self.end - 1))
 
-    def _part(
-        self, key: str, title: str, unit: str, part: CellFormula, names: Mapping[str, str], n: int
-    ) -> str:
-        plain = isinstance(part.node, Name) and part.node.name == "q"
-        used = {"q": names[f"q {n}"]} if plain else {
-            node.name: names[node.name] for node in names_in(part.node) if node.name in names
-        }  # fmt: skip
-        return self._column(key, title, unit, part, used)
-
-    def _time(self) -> str:
+    def _time(self) -> None:
         """The time since the first row of the table."""
-        if "time" not in self.columns.of:
+        if "time" not in self.table.of:
             lead = self.book.leading
             scale = "*pi/180" if lead.kind == "angle" and self.book.unit("angle") == "deg" else ""
             begin = float(self.book.values[lead.symbol][0])
             text = f"(q-({begin!r})){scale}/s"
             names = {"q": lead.symbol, "s": rate_key(lead.symbol, 1)}
             self._add("time", "t", "s", text, names)
-        return "time"
 
     def _push(self, point: str, link: str | None, x: str, y: str) -> None:
         """A force on a point, and its virtual work."""
@@ -292,63 +232,54 @@ class _Page:
         for axis, key in (("x", x), ("y", y)):
             rate = rate_key(coordinate_name(point, axis), 1)
             if rate in self.book.values:
-                self.work.append(f"{key}*{rate}")
+                self.work.append((key, rate))
 
     def _spring(self, name: str, first: str, second: str) -> None:
-        start, linkage = self.end, self.cells.linkage
-        names = {**self._place(first, "0"), **self._place(second, "1")}
-        length = self._add(f"{name} length", "length", linkage.length, f"sqrt({_SPAN})", names)
+        linkage = self.cells.linkage
+        self.table.group = f"Spring {name}"
+        names = self._ends(first, second)
+        names |= self._rates(first, 1, "a") | self._rates(second, 1, "b")
+        names |= {word: f"{name} {word}" for word in ("stiffness", "free", "damping")}
+        names |= {"l": f"{name} length", "r": f"{name} rate", "on": "moving"}
+        self._add(f"{name} length", "length", linkage.length, f"sqrt({_SPAN})", names)
         text = "((x1-x0)*(bx-ax)+(y1-y0)*(by-ay))/l"
-        text, rates = self._formula(text, (first, 1, "a"), (second, 1, "b"))
-        rate = self._add(
-            f"{name} rate", "rate", f"{linkage.length}/s", text, {**names, **rates, "l": length}
-        )
-        constants = {word: f"{name} {word}" for word in ("stiffness", "free", "damping")}
+        self._add(f"{name} rate", "rate", f"{linkage.length}/s", text, names)
         text = "stiffness*(l-free)+damping*on*r"
-        used = {**constants, "l": length, "r": rate, "on": "moving"}
-        tension = self._add(f"{name} tension", "tension", linkage.force, text, used)
+        names["f"] = self._add(f"{name} tension", "tension", linkage.force, text, names)
         for point, sign in ((first, ""), (second, "-")):
-            keys = [
-                self._add(
-                    f"{name} on {point} {axis}", f"on {point} {axis}", linkage.force,
-                    f"{sign}f*({axis}1-{axis}0)/l", {**names, "f": tension, "l": length},
-                )
-                for axis in "xy"
-            ]  # fmt: skip
+            texts = f"{sign}f*(x1-x0)/l", f"{sign}f*(y1-y0)/l"
+            keys = self._pair(f"{name} on {point}", f"on {point}", linkage.force, texts, names)
             self._push(point, None, keys[0], keys[1])
-        self.groups.append((f"Spring {name}", start, self.end - 1))
 
     def _torsion(self, name: str, first: str, second: str) -> None:
         """The torque of a torsion spring on two links, by the angle between them."""
-        start, linkage = self.end, self.cells.linkage
+        linkage = self.cells.linkage
+        self.table.group = f"Spring {name}"
         links = {"a": first, "b": second}
-        symbols = {word: canonical(link) for word, link in links.items() if link != GROUND}
-        between = "-".join(word if word in symbols else "0" for word in "ba")
         scale = "*pi/180" if linkage.angle.value == "deg" else ""
-        angles = {**symbols, "free": f"{name} free"}
-        self._add(f"{name} turn", "turn", "rad", f"({between}-free){scale}", angles)
-        speeds = {word: rate_key(symbol, 1) for word, symbol in symbols.items()}
-        self._add(f"{name} rate", "rate", "rad/s", between, speeds)
-        names = {word: f"{name} {word}" for word in ("stiffness", "damping", "turn", "rate")}
-        unit = f"{linkage.force}·{linkage.length}"
+        angles = {word: canonical(link) for word, link in links.items()}
+        names = {
+            word: f"{name} {word}" for word in ("stiffness", "free", "damping", "turn", "rate")
+        }
+        names["on"] = "moving"
+        self._add(f"{name} turn", "turn", "rad", f"(b-a-free){scale}", {**names, **angles})
+        speeds = {word: rate_key(symbol, 1) for word, symbol in angles.items()}
+        self._add(f"{name} rate", "rate", "rad/s", "b-a", speeds)
         for word, sign in (("a", ""), ("b", "-")):
-            if word not in symbols:
-                continue
-            text = f"{sign}(stiffness*turn+damping*on*rate)"
-            key = f"{name} on {links[word]}"
-            self._add(key, f"on {links[word]}", unit, text, {**names, "on": "moving"})
-            self.columns.torques.append((links[word], key))
-            self.work.append(f"{key}*{speeds[word]}")
-        self.groups.append((f"Spring {name}", start, self.end - 1))
+            if links[word] != GROUND:
+                text = f"{sign}(stiffness*turn+damping*on*rate)"
+                unit = f"{linkage.force}·{linkage.length}"
+                key = self._add(f"{name} on {links[word]}", f"on {links[word]}", unit, text, names)
+                self.columns.torques.append((links[word], key))
+                self.work.append((key, speeds[word]))
 
     def _effort(self) -> None:
         """The sum of virtual work over the speed of the input."""
-        start = self.end
+        self.table.group = "Virtual work"
         for which in self.book.model.equations.inputs:
             names: dict[str, str] = {}
             terms = []
-            for k, term in enumerate(self.work):
-                load, _, moved = term.partition("*")
+            for k, (load, moved) in enumerate(self.work):
                 names |= {f"f{k}": load, f"v{k}": self._by(moved, which)}
                 terms.append(f"f{k}*v{k}")
             # eq. (71), for one input both sides times its speed; "by input" the speed is 1
@@ -360,4 +291,3 @@ class _Page:
             key = f"effort {which.symbol}"
             self.columns.efforts[key] = effort_name(which.name)
             self._add(key, effort_name(which.name), unit, text, names)
-        self.groups.append(("Virtual work", start, self.end - 1))

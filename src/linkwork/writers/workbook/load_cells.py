@@ -11,7 +11,7 @@ from linkwork.contacts.cams import Cam
 from linkwork.contacts.curves import Curve, NoncircularGear
 from linkwork.core.equations.compiling import coordinate_name
 from linkwork.core.expression.grammar import CONSTANTS, parse
-from linkwork.core.expression.tree import Node, names_in
+from linkwork.core.expression.tree import Name, Node, names_in
 from linkwork.core.foundation.names import GROUND, canonical
 from linkwork.core.foundation.units import force_of_inertia
 from linkwork.core.mechanism.dimensions import Number
@@ -19,7 +19,7 @@ from linkwork.core.mechanism.linkage import Linkage
 from linkwork.core.mechanism.part.part import carriers
 from linkwork.core.mechanism.part.springs import Load
 from linkwork.forces.reactions.parts import wound_angle
-from linkwork.writers.formulas.closure_formulas import CellFormula
+from linkwork.writers.formulas.closure_formulas import of_radians, rebuilt
 from linkwork.writers.formulas.rate_formulas import rate_key
 from linkwork.writers.workbook.book import Book
 from linkwork.writers.workbook.layout import print_on_one_page
@@ -45,7 +45,7 @@ def force_problem(book: Book) -> str | None:
     ]
     if loose:
         return f"the forces of {loose[0]}, a pin between cylinders, have no cells"
-    turning = {variable.symbol for variable in book.variables}
+    turning = {variable.symbol for variable in book.model.equations.variables}
     for spring in LoadCells(book, None).pulling:
         for link in spring.links or ():
             if link != GROUND and canonical(link) not in turning:
@@ -65,9 +65,11 @@ def force_problem(book: Book) -> str | None:
 
 def _key(book: Book, name: str) -> str | None:
     """The key of the cell that a load's formula means; "" for a constant."""
-    if name in CONSTANTS or name == "t":
+    if name == "t":
+        return "time"
+    if name in CONSTANTS:
         return ""
-    for variable in book.variables:
+    for variable in book.model.equations.variables:
         if canonical(name) in (canonical(variable.name), variable.symbol):
             return variable.symbol
         for word, order in (("velocity", 1), ("acceleration", 2)):
@@ -83,12 +85,12 @@ def _key(book: Book, name: str) -> str | None:
 
 @dataclass
 class LoadCells:
-    """The keys of the cells of a load sheet."""
+    """The keys of the cells of a load sheet; ``loads`` with the formulas of their components."""
 
     book: Book
     sheet: Any
     row: int = 3
-    loads: list[tuple[Load, tuple[CellFormula, ...], dict[str, str]]] = field(default_factory=list)
+    loads: list[tuple[Load, tuple[Node, ...]]] = field(default_factory=list)
 
     @property
     def linkage(self) -> Linkage:
@@ -107,10 +109,10 @@ class LoadCells:
         """The springs with a stiffness or a damping."""
         return tuple(spring for spring in self.linkage.springs if spring.pulls)
 
-    def number(self, key: str, preferred: str, value: float, unit: str, about: str) -> None:
+    def number(self, key: str, value: float, unit: str, about: str) -> None:
         """A yellow cell with a name."""
         book, style = self.book, self.book.style
-        cell = book.names.claim(key, preferred)
+        cell = book.names.claim(key, key.replace(" ", "_"))
         self.sheet.write(self.row, 0, cell, style["head_left"])
         self.sheet.write_number(self.row, 1, value, style["input"])
         self.sheet.write(self.row, 2, unit, style["unit_right"])
@@ -131,11 +133,11 @@ def write_loads(book: Book, sheet: Any) -> LoadCells:
     sheet.write(1, 0, note, book.style["note"])
     # the sheet Velocities has rates at unit speed without one, which load nothing
     moving = 0.0 if book.motion.speed is None else 1.0
-    cells.number("moving", "moving", moving, "", "1: masses have inertia; 0: at rest")
+    cells.number("moving", moving, "", "1: masses have inertia; 0: at rest")
     if linkage.masses:
         scale = force_of_inertia(linkage.mass, linkage.length, linkage.force)
         unit = f"{linkage.force} per {linkage.mass}·{linkage.length}/s²"
-        cells.number("force unit", "force_unit", scale, unit, "force of a unit of inertia")
+        cells.number("force unit", scale, unit, "force of a unit of inertia")
         gravity = linkage.gravity
         size = 0.0 if gravity is None else gravity.acceleration(numbers, linkage.length)
         stated = None if gravity is None else gravity.angle
@@ -143,10 +145,8 @@ def write_loads(book: Book, sheet: Any) -> LoadCells:
         for axis, part in (("x", math.cos(angle)), ("y", math.sin(angle))):
             # cos(-90°) is not zero in floating point
             part = 0.0 if abs(part) < 1e-16 else part
-            about = f"gravity along {axis}"
-            cells.number(
-                f"gravity {axis}", f"gravity_{axis}", size * part, f"{linkage.length}/s²", about
-            )
+            unit = f"{linkage.length}/s²"
+            cells.number(f"gravity {axis}", size * part, unit, f"gravity along {axis}")
     _write_masses(cells)
     force, length = linkage.force, linkage.length
     for spring in cells.pulling:
@@ -157,9 +157,9 @@ def write_loads(book: Book, sheet: Any) -> LoadCells:
             units = f"{force}·{length}/rad", linkage.angle.value, f"{force}·{length}·s"
         amounts = numbers(spring.stiffness), free, numbers(spring.damping)
         for word, value, unit in zip(("stiffness", "free", "damping"), amounts, units, strict=True):
-            cells.number(f"{spring.name} {word}", f"{spring.name}_{word}", value, unit, "spring")
+            cells.number(f"{spring.name} {word}", value, unit, "spring")
     for name, word, value, kind, about in numbers_of(linkage):
-        cells.number(f"{name} {word}", f"{name}_{word}", value, book.model.units.of(kind), about)
+        cells.number(f"{name} {word}", value, book.model.units.of(kind), about)
     for k, load in enumerate(linkage.loads, start=1):
         _write_load(cells, k, load)
     print_on_one_page(sheet, tall=0)
@@ -171,40 +171,35 @@ def _write_masses(cells: LoadCells) -> None:
     mass_unit, length = linkage.mass, linkage.length
     for link in cells.masses:
         mass, numbers = linkage.masses[link], linkage.numbers
-        cells.number(
-            f"mass {link}", f"mass_{link}", numbers(mass.mass), mass_unit, f"mass of {link}"
-        )
+        cells.number(f"mass {link}", numbers(mass.mass), mass_unit, f"mass of {link}")
         if mass.shape is not None:
             continue  # a rod follows its length
         for axis, part in zip("xy", mass.center or (0.0, 0.0), strict=True):
             about = f"centre of mass of {link}, in the frame of the link"
-            key = f"center {link} {axis}"
-            cells.number(key, f"center_{link}_{axis}", numbers(part), length, about)
+            cells.number(f"center {link} {axis}", numbers(part), length, about)
         unit, about = f"{mass_unit}·{length}²", f"moment of inertia of {link} about its centre"
-        cells.number(f"inertia {link}", f"inertia_{link}", numbers(mass.inertia), unit, about)
+        cells.number(f"inertia {link}", numbers(mass.inertia), unit, about)
 
 
 def _write_load(cells: LoadCells, k: int, load: Load) -> None:
     """A load: cells of its numbers; formulas go to the sheet Forces."""
     linkage = cells.linkage
     unit = linkage.force if load.torque is None else f"{linkage.force}·{linkage.length}"
-    parts, names = [], {}
-    for (word, number), axis in zip(_components(load), "xy", strict=False):
-        formula = number if isinstance(number, str) else None
-        if formula is None:
-            key = f"load {k} {word}"
-            name = f"load{k}_{axis}" if load.torque is None else f"load{k}_torque"
-            cells.number(key, name, linkage.numbers(number), unit, load.label)
-            parts.append(CellFormula(parse("q")))
-            names[f"q {len(parts)}"] = key
-            continue
-        tree: Node = parse(formula, comparing=True)
-        parts.append(CellFormula(tree, linkage.angle))
-        for node in names_in(tree):
-            key_of = _key(cells.book, node.name)
-            if key_of:
-                names[node.name] = key_of
-    cells.loads.append((load, tuple(parts), names))
+    parts: list[Node] = []
+
+    def named(part: Node) -> Node:
+        key = _key(cells.book, part.name) if isinstance(part, Name) else None
+        return Name(key) if key else part
+
+    for word, number in _components(load):
+        if isinstance(number, str):
+            formula = of_radians(parse(number, comparing=True), linkage.angle)
+            parts.append(rebuilt(formula, named))
+        else:
+            key = f"load{k} {word}"
+            cells.number(key, linkage.numbers(number), unit, load.label)
+            parts.append(Name(key))
+    cells.loads.append((load, tuple(parts)))
 
 
 def _components(load: Load) -> list[tuple[str, Number]]:

@@ -2,8 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Mapping
 from functools import singledispatch
+from typing import Any
+
+import numpy as np
 
 from linkwork.core.foundation.names import GROUND
 from linkwork.core.mechanism.linkage import Linkage
@@ -14,19 +17,7 @@ from linkwork.core.mechanism.part.rolling import Rolling
 from linkwork.core.mechanism.part.weld import Weld
 from linkwork.core.results.quantity import Kind
 from linkwork.forces.reactions.drives import effort_name
-from linkwork.writers.workbook.acting import (
-    SPAN,
-    Act,
-    Contact,
-    Entry,
-    Reading,
-    Unknown,
-    computed,
-    left_of,
-    minus,
-    offset_contact,
-    opposite,
-)
+from linkwork.writers.workbook.acting import Act, Contact, Follower, Reading, Unknown, opposite
 from linkwork.writers.workbook.reactions import Reactions
 
 # ----------------------------------------------------------------------
@@ -37,6 +28,7 @@ from linkwork.writers.workbook.reactions import Reactions
 
 
 Numbers = Iterable[tuple[str, float, Kind, str]]
+Places = Mapping[str, Any]
 
 
 @singledispatch
@@ -50,8 +42,8 @@ def write_drive(part: Part, reactions: Reactions, effort: str) -> None:
 
 
 @singledispatch
-def part_contacts(part: Part, linkage: Linkage) -> Iterable[Contact]:
-    """Where a part pushes links in contact."""
+def part_contacts(part: Part, linkage: Linkage, at: Places) -> Iterable[Contact]:
+    """Where a part pushes links in contact; ``at`` are the places of points."""
     return ()
 
 
@@ -61,10 +53,19 @@ def part_numbers(part: Part, linkage: Linkage) -> Numbers:
     return ()
 
 
-def contacts_of(linkage: Linkage) -> Iterator[Contact]:
+def contacts_of(linkage: Linkage, at: Places) -> Iterator[Contact]:
     """Where the parts of a linkage push links in contact."""
     for part in linkage.parts:
-        yield from part_contacts(part, linkage)
+        yield from part_contacts(part, linkage, at)
+
+
+def offset_contact(
+    name: str, place: Any, line: tuple[str, str], at: Places, side: float, reach: float
+) -> Contact:
+    """``reach`` to the left of a line from a place; the unit vector is to its ``side``."""
+    along = at[line[1]] - at[line[0]]
+    left = 1j * along / abs(along)
+    return Contact(name=name, place=place + reach * left, way=side * left)
 
 
 def numbers_of(linkage: Linkage) -> Iterator[tuple[str, str, float, Kind, str]]:
@@ -82,11 +83,15 @@ def mesh(name: str, links: tuple[str, str], reactions: Reactions) -> None:
     """The force of the first link's teeth on the second's, at the contact of this name."""
     first, second = links
     way, tangent = reactions.way[name], f"{name}.tangent"
-    reactions.pair(tangent, second, first, name, left_of(way))
-    names = {"p": reactions.cells[f"{name} pressure"]}
+    reactions.pair(tangent, second, first, name, 1j * way)
+    pressure = reactions.number(f"{name} pressure") * reactions.linkage.angle.radians
     acts = opposite(second, first, name, way)
-    # eq. (74) for round wheels
-    reactions.follow(f"{name}.radial", tangent, "tan(p)*abs(t)", names, acts)
+
+    def size(force: Any) -> Any:
+        return pressure.apply(np.tan, pressure) * force.apply(np.fabs, force)  # eq. (74)
+
+    radial = Follower(f"{name}.radial", reactions.force, tangent, size, acts)
+    reactions.followers.append(radial)
 
 
 @part_numbers.register(Gear)
@@ -110,25 +115,24 @@ def belt_numbers(belt: Belt, linkage: Linkage) -> Iterator[tuple[str, float, Kin
 
 
 @part_contacts.register
-def belt_contacts(belt: Belt, linkage: Linkage) -> Iterator[Contact]:
+def belt_contacts(belt: Belt, linkage: Linkage, at: Places) -> Iterator[Contact]:
     """The tangent points of both strands; the unit vectors are their pull on the wheels."""
     first, second = belt.pitch_radii(linkage)
     if belt.crossed:  # the strands touch the second wheel on its other side
         second = -second
-    cosine = f"({(first - second)!r}/{SPAN})"
-    sine = f"sqrt(1-{cosine}^2)"
+    start, end = (at[center] for center in belt.centers)
+    span = abs(end - start)
+    cosine = (first - second) / span
+    sine = span.apply(np.sqrt, 1.0 - cosine * cosine)
     for side in (1, -1):
         # the direction from both centres to the tangent points
-        out_x = f"((bx-ax)*{cosine} - {side}*(by-ay)*{sine})/{SPAN}"
-        out_y = f"((by-ay)*{cosine} + {side}*(bx-ax)*{sine})/{SPAN}"
-        for wheel, (letter, radius) in enumerate((("a", first), ("b", second))):
+        out = (end - start) * (cosine + side * 1j * sine) / span
+        for wheel, (center, radius) in enumerate(((start, first), (end, second))):
             way = side if wheel == 0 else -side
             yield Contact(
                 name=_strand(belt, side, wheel),
-                points=dict(zip("ab", belt.centers, strict=True)),
-                place=(f"{letter}x + {radius!r}*{out_x}", f"{letter}y + {radius!r}*{out_y}"),
-                # normal to the radii
-                way=(f"{way}*{out_y}", f"{-way}*{out_x}"),
+                place=center + radius * out,
+                way=-1j * way * out,  # normal to the radii
             )
 
 
@@ -140,22 +144,24 @@ def _strand(belt: Belt, side: int, wheel: int) -> str:
 def write_belt(belt: Belt, reactions: Reactions) -> None:
     """The pull, the mean tension, and the tensions of both strands."""
     halves, whole = [], []
-    for side, half in ((1, "0.5*w"), (-1, "-0.5*w")):
+    for side, half in ((1, 0.5), (-1, -0.5)):
         for wheel, link in enumerate(belt.wheels):
             point = _strand(belt, side, wheel)
-            x, y = reactions.way[point]
-            halves.append(Act(link, point, computed(half, {"w": x}), computed(half, {"w": y})))
-            whole.append(Act(link, point, x, y))
-    pull, mean = f"{belt.name}.pull", f"{belt.name}.mean"
-    reactions.unknowns.append(Unknown(pull, reactions.force, tuple(halves)))
-    names: dict[str, Entry] = {}
-    size = "0.5*abs(t)"  # without pretension the slack strand has none
-    if belt.pretension is not None:
-        size, names = "p", {"p": reactions.cells[f"{belt.name} pretension"]}
-    reactions.follow(mean, pull, size, names, tuple(whole))
-    for number, text in ((1, "b+0.5*a"), (2, "b-0.5*a")):
-        name = f"{belt.name}.tension{number}"
-        reactions.readings.append(Reading(name, reactions.force, text, (pull, mean)))
+            way = reactions.way[point]
+            halves.append(Act(link, point, half * way))
+            whole.append(Act(link, point, way))
+    pull, mean, force = f"{belt.name}.pull", f"{belt.name}.mean", reactions.force
+    reactions.unknowns.append(Unknown(pull, force, tuple(halves)))
+
+    def size(pulled: Any) -> Any:
+        if belt.pretension is not None:
+            return reactions.number(f"{belt.name} pretension")
+        return 0.5 * pulled.apply(np.fabs, pulled)  # the slack strand has no tension
+
+    reactions.followers.append(Follower(mean, force, pull, size, tuple(whole)))
+    for number, share in ((1, 0.5), (2, -0.5)):
+        tension = Reading(f"{belt.name}.tension{number}", force, {mean: 1.0, pull: share})
+        reactions.readings.append(tension)
 
 
 # ----------------------------------------------------------------------
@@ -168,20 +174,18 @@ def drive_cylinder(cylinder: Cylinder, reactions: Reactions, effort: str) -> Non
     along = reactions.along[cylinder.name]
     start, end = cylinder.between
     acts = (
-        Act(reactions.joined[end][0], end, *along),
-        Act(reactions.joined[start][0], start, minus(along[0]), minus(along[1])),
+        Act(reactions.joined[end][0], end, along),
+        Act(reactions.joined[start][0], start, -along),
     )
     reactions.unknowns.append(Unknown(effort, reactions.force, acts))
-    for point, sign in ((start, ""), (end, "-")):
+    for point, sign in ((start, 1.0), (end, -1.0)):
         names = reactions.carriers[point]
         # the force on the link named later is read: on the other one it is the opposite
         if len(names) == 2 and names[-1] != cylinder.name:
             continue
         stem = reactions.stem(point, "force", cylinder.name)
-        for axis, component in zip("xy", along, strict=True):
-            reading = Reading(
-                f"{stem}.{axis}", reactions.force, f"{sign}a*w", (effort,), {"w": component}
-            )
+        for axis, part in (("x", along.real), ("y", along.imag)):
+            reading = Reading(f"{stem}.{axis}", reactions.force, {effort: sign * part})
             reactions.readings.append(reading)
 
 
@@ -189,22 +193,16 @@ def drive_cylinder(cylinder: Cylinder, reactions: Reactions, effort: str) -> Non
 # Gears: teeth at the pitch point.
 
 
-numbers = pressure
-
-
 @part_contacts.register
-def gear_contacts(gear: Gear, linkage: Linkage) -> Iterator[Contact]:
+def gear_contacts(gear: Gear, linkage: Linkage, at: Places) -> Iterator[Contact]:
     """The pitch point, and the direction from the first wheel's material to the second's."""
     first, second = gear.pitch_radii(linkage)
     # in the ratio of the radii, also where a changed arm changes the distance
     share = first / (first - second if gear.internal else first + second)
-    sign = "-" if gear.internal else ""
-    yield Contact(
-        name=gear.name,
-        points=dict(zip("ab", gear.centers, strict=True)),
-        place=(f"ax + {share!r}*(bx-ax)", f"ay + {share!r}*(by-ay)"),
-        way=(f"{sign}(bx-ax)/{SPAN}", f"{sign}(by-ay)/{SPAN}"),
-    )
+    start, end = (at[center] for center in gear.centers)
+    way = (end - start) / abs(end - start)
+    place = start + share * (end - start)
+    yield Contact(name=gear.name, place=place, way=-way if gear.internal else way)
 
 
 @write_reactions.register
@@ -218,14 +216,13 @@ def write_gear(gear: Gear, reactions: Reactions) -> None:
 
 
 @part_contacts.register
-def rack_contacts(rack: Rack, linkage: Linkage) -> Iterator[Contact]:
+def rack_contacts(rack: Rack, linkage: Linkage, at: Places) -> Iterator[Contact]:
     """The pitch point, and the direction from the pinion to the rack."""
     slider = rack.guide(linkage)
     assert slider is not None
     side = -linkage.side_of(slider.line, rack.center)
-    yield offset_contact(
-        rack.name, rack.center, slider.line, side, side * linkage.numbers(rack.radius)
-    )
+    reach = side * linkage.numbers(rack.radius)
+    yield offset_contact(rack.name, at[rack.center], slider.line, at, side, reach)
 
 
 @write_reactions.register
@@ -241,23 +238,21 @@ def write_rack(rack: Rack, reactions: Reactions) -> None:
 
 
 @part_contacts.register
-def rolling_contacts(rolling: Rolling, linkage: Linkage) -> Iterator[Contact]:
+def rolling_contacts(rolling: Rolling, linkage: Linkage, at: Places) -> Iterator[Contact]:
     """The point of contact, and the normal towards the wheel."""
     small = linkage.numbers(rolling.radius)
     if rolling.line is not None:
         side = linkage.side_of(rolling.line, rolling.center)
-        yield offset_contact(rolling.name, rolling.center, rolling.line, side, -side * small)
+        center = at[rolling.center]
+        yield offset_contact(rolling.name, center, rolling.line, at, side, -side * small)
         return
     assert rolling.circle is not None
     large = linkage.numbers(rolling.circle_radius or 0)
-    away = -1.0 if rolling.inside else 1.0
     reach = -large if rolling.inside and large < small else large
-    yield Contact(
-        name=rolling.name,
-        points={"a": rolling.circle, "b": rolling.center},
-        place=(f"ax + {reach!r}*(bx-ax)/{SPAN}", f"ay + {reach!r}*(by-ay)/{SPAN}"),
-        way=(f"{away!r}*(bx-ax)/{SPAN}", f"{away!r}*(by-ay)/{SPAN}"),
-    )
+    start, end = at[rolling.circle], at[rolling.center]
+    way = (end - start) / abs(end - start)
+    away = -way if rolling.inside else way
+    yield Contact(name=rolling.name, place=start + reach * way, way=away)
 
 
 @write_reactions.register
@@ -265,12 +260,12 @@ def write_rolling(rolling: Rolling, reactions: Reactions) -> None:
     """The forces of the ground, or of another link, on the wheel."""
     away, name = reactions.way[rolling.name], rolling.name
     reactions.pair(f"{name}.normal", rolling.wheel, rolling.on, name, away)
-    grip = left_of(away)
+    grip = 1j * away
     line = rolling.line
     # along the line, or counter-clockwise about the centre of the circle
     on_left = line is not None and reactions.linkage.side_of(line, rolling.center) > 0.0
     if rolling.inside or on_left:
-        grip = minus(grip[0]), minus(grip[1])
+        grip = -grip
     reactions.pair(f"{name}.tangent", rolling.wheel, rolling.on, name, grip)
 
 
@@ -288,7 +283,7 @@ def drive_rolling(rolling: Rolling, reactions: Reactions, effort: str) -> None:
 @write_reactions.register
 def write_slider(slider: Slider, reactions: Reactions) -> None:
     """The normal force at the slider's first point, and the moment."""
-    across, point = left_of(reactions.along[slider.name]), slider.points[0]
+    across, point = 1j * reactions.along[slider.name], slider.points[0]
     reactions.pair(f"{slider.name}.normal", slider.link, slider.on, point, across)
     reactions.couple(f"{slider.name}.moment", slider.link, slider.on)
 
@@ -307,7 +302,7 @@ def drive_slider(slider: Slider, reactions: Reactions, effort: str) -> None:
 @write_reactions.register
 def write_slot(slot: Slot, reactions: Reactions) -> None:
     """The normal force on the pin."""
-    body, across = reactions.joined[slot.point][0], left_of(reactions.along[slot.name])
+    body, across = reactions.joined[slot.point][0], 1j * reactions.along[slot.name]
     reactions.pair(f"{slot.name}.normal", body, slot.on, slot.point, across)
 
 

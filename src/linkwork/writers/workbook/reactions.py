@@ -2,23 +2,15 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass, field
+from typing import Any
 
 from linkwork.core.mechanism.linkage import Linkage
 from linkwork.core.mechanism.part.part import carriers
 from linkwork.core.motion.model import Model
 from linkwork.core.results.quantity import Kind
-from linkwork.writers.workbook.acting import (
-    NO,
-    ONE,
-    Act,
-    Entry,
-    Follower,
-    Reading,
-    Unknown,
-    minus,
-    opposite,
-)
+from linkwork.writers.workbook.acting import Act, Follower, Reading, Unknown, opposite
 
 
 @dataclass
@@ -26,14 +18,14 @@ class Reactions:
     """All reactions.
 
     ``along`` has the unit vectors of lines by part, ``way`` those of contacts, whose places are
-    points of the sheet; ``cells`` the cells of the sheet of loads by key.
+    points of the sheet; ``number`` gives a number of the sheet of loads by key.
     """
 
     model: Model
     linkage: Linkage
-    along: dict[str, tuple[Entry, Entry]]
-    way: dict[str, tuple[Entry, Entry]]
-    cells: dict[str, Entry]
+    along: dict[str, Any]
+    way: dict[str, Any]
+    number: Callable[[str], Any]
     unknowns: list[Unknown] = field(default_factory=list)
     followers: list[Follower] = field(default_factory=list)
     readings: list[Reading] = field(default_factory=list)
@@ -50,26 +42,18 @@ class Reactions:
             # loads on a pin act on its first link, so that this one needs no further unknown
             for other in links[1:]:
                 stem = self.stem(point, "force", other)
-                self.pair(f"{stem}.x", other, links[0], point, (ONE, NO))
-                self.pair(f"{stem}.y", other, links[0], point, (NO, ONE))
+                self.pair(f"{stem}.x", other, links[0], point, 1.0)
+                self.pair(f"{stem}.y", other, links[0], point, 1j)
 
     def stem(self, point: str, what: str, link: str) -> str:
         """The name of a reaction on a link at a point that other links may share."""
         return f"{point}.{what}" if len(self.carriers[point]) < 3 else f"{point}.{what}.{link}"
 
-    def pair(
-        self, name: str, on: str, against: str, point: str, along: tuple[Entry, Entry]
-    ) -> None:
+    def pair(self, name: str, on: str, against: str, point: str, along: Any) -> None:
         """A force on one link at a point, and its reaction on another."""
         self.unknowns.append(Unknown(name, self.force, opposite(on, against, point, along)))
 
     def couple(self, name: str, on: str, against: str) -> None:
         """A moment on one link, and its reaction on another."""
-        acts = Act(on, "", moment=ONE), Act(against, "", moment=minus(ONE))
+        acts = Act(on, "", moment=1.0), Act(against, "", moment=-1.0)
         self.unknowns.append(Unknown(name, self.moment, acts))
-
-    def follow(
-        self, name: str, of: str, size: str, names: dict[str, Entry], acts: tuple[Act, ...]
-    ) -> None:
-        """A force whose size is a formula of an unknown."""
-        self.followers.append(Follower(name, self.force, of, size, names, acts))

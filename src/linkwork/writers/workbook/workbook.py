@@ -30,24 +30,22 @@ from linkwork.writers.workbook.book import (
     iterated,
 )
 from linkwork.writers.workbook.chart_page import notices, write_about, write_charts, write_linkwork
-from linkwork.writers.workbook.cycle_page import planned_cycle, write_cycle
+from linkwork.writers.workbook.cycle_page import write_cycle
 from linkwork.writers.workbook.dimension_page import write_dimensions
 from linkwork.writers.workbook.drawing_page import SHEET as DRAWING, has_drawing, write_drawing
 from linkwork.writers.workbook.equilibrium_page import EQUILIBRIUM, write_equilibrium
 from linkwork.writers.workbook.force_page import write_forces
 from linkwork.writers.workbook.layout import FastCells, set_up_page
 from linkwork.writers.workbook.load_cells import LOADS, force_problem, write_loads
-from linkwork.writers.workbook.newton_page import planned_newton, write_newton
+from linkwork.writers.workbook.newton_page import check_size, write_newton
 from linkwork.writers.workbook.rates import (
     PARTIALS,
-    planned_velocities,
     write_partials,
     write_velocities,
 )
 
 _MOST_ROWS = 20_000
-_MOST_CELLS = 2_000_000
-_CYCLE, _NEWTON, _SHEETS = 0.1, 0.4, 0.55  # finished fractions after sheets; then the file
+_NEWTON, _SHEETS = 0.4, 0.55  # finished fractions after sheets; then the file
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -125,27 +123,21 @@ def _write_sheets(
     book: Book, sheets: dict[str, Any], version: str, progress: Callable[[float], None]
 ) -> None:
     """Write all sheets; sheets to which other ones refer come first."""
+    check_size(book)
     write_dimensions(book, sheets[DIMENSIONS])
-    newton, columns = planned_newton(book), planned_cycle(book)
-    velocities = planned_velocities(book)
-    _check_size(book.count, newton.end + columns.status + velocities.end)
-    write_cycle(book, sheets[CYCLE], columns, newton)
-    progress(_CYCLE)
-    span = _NEWTON - _CYCLE
-    write_newton(
-        book, sheets[NEWTON], newton, columns.of, lambda part: progress(_CYCLE + span * part)
-    )
-    write_velocities(book, sheets[VELOCITIES], velocities, newton)
+    newton = write_newton(book, sheets[NEWTON], lambda part: progress(_NEWTON * part))
+    columns = write_cycle(book, sheets[CYCLE], newton)
+    write_velocities(book, sheets[VELOCITIES], newton)
     if DRAWING in sheets:
-        write_drawing(book, sheets[DRAWING], columns.of)
+        write_drawing(book, sheets[DRAWING], columns)
     if PARTIALS in sheets:
         write_partials(book, sheets[PARTIALS], newton)
     if LOADS in sheets:
         cells = write_loads(book, sheets[LOADS])
         forces = write_forces(book, sheets[FORCES], cells)
         if EQUILIBRIUM in sheets:
-            write_equilibrium(book, sheets[EQUILIBRIUM], cells, forces, columns.of)
-    write_charts(book, sheets["Charts"], columns.of)
+            write_equilibrium(book, sheets[EQUILIBRIUM], cells, forces, columns)
+    write_charts(book, sheets["Charts"], columns)
     write_linkwork(book, sheets[LINKWORK])
     write_about(book, sheets["About"], columns, version)
     progress(_SHEETS)
@@ -171,14 +163,6 @@ def _new(buffer: io.BytesIO) -> tuple[Any, type]:
 
     options = {"in_memory": True, "strings_to_formulas": False, "strings_to_urls": False}
     return xlsxwriter.Workbook(buffer, options), type("Sheet", (FastCells, Worksheet), {})
-
-
-def _check_size(rows: int, columns: int) -> None:
-    if rows * columns > _MOST_CELLS:
-        raise InputError(
-            f"{rows} rows of {columns} columns are too many cells for a workbook with formulas (at "
-            f"most {_MOST_CELLS}): take a larger step, or write CSV"
-        )
 
 
 def _check(model: Model, motion: Motion) -> None:
