@@ -12,8 +12,11 @@ __all__ = ["thinned"]
 
 def thinned(values: Iterable[Any], every: int = 6) -> list[Any]:
     """Every sixth value, or whichever, as it is; as many extended ones; the others thorough."""
-    marks = {every // 2: pytest.mark.extended, 0: ()}
     return [
-        pytest.param(value, marks=marks.get(k % every, pytest.mark.thorough))
+        value if k % every == 0 else pytest.param(value, marks=_mark(k % every, every))
         for k, value in enumerate(values)
     ]
+
+
+def _mark(place: int, every: int) -> pytest.MarkDecorator:
+    return pytest.mark.extended if place == every // 2 else pytest.mark.thorough

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 import linkwork as lw
+from linkwork.core.results.limit import LimitKind
 
 FULL = {"θ13": 188.572556, "θ15": 175.143712, "θ14": 67.394934, "s16": 216.940343}
 FULL_SLOPE = {"θ13": -0.031126, "θ15": -0.113395, "θ14": 0.705483, "s16": -168.581}
@@ -62,10 +63,7 @@ def test_limited_reading_says_which_rows_are_out_of_reach() -> None:
     # printed to 12 decimals: 1e-12 rad are 6e-11 deg
     assert low == pytest.approx(149.617278637485, abs=1e-12)
     assert high == pytest.approx(360 - 158.679899604109, abs=1e-12)
-    assert all(
-        limit.located and limit.kind is lw.core.results.LimitKind.DEAD_POINT
-        for limit in motion.limits
-    )
+    assert all(limit.located and limit.kind is LimitKind.DEAD_POINT for limit in motion.limits)
 
 
 @pytest.mark.parametrize(

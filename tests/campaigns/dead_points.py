@@ -16,6 +16,7 @@ from flint import arb, ctx
 
 import linkwork as lw
 from linkwork.core.mechanism.loops import Loops
+from linkwork.core.results.limit import Limit, LimitKind
 from tests.described import described_as
 
 __all__ = ["NearChangePoint", "dead_point_campaign"]
@@ -133,7 +134,7 @@ def _allowed(angle: arb) -> float:
     return 1e-13 + 4e-16 / abs(math.sin(float(angle)))
 
 
-def _limit_is_wrong(limit: lw.core.results.Limit, truth: arb, counts: Counter[str]) -> str:
+def _limit_is_wrong(limit: Limit, truth: arb, counts: Counter[str]) -> str:
     counts["dead points"] += 1
     if not limit.located:
         counts["dead points not located"] += 1
@@ -169,7 +170,7 @@ def _sweep(
     motion = lw.loads(bar.text(end, _ROWS)).sweep(certify=certify)
     low, high = ends
     for limit in motion.limits:
-        if limit.kind is not lw.core.results.LimitKind.DEAD_POINT:
+        if limit.kind is not LimitKind.DEAD_POINT:
             yield f"a {limit.kind.word} at {limit.input!r}"
             continue
         all_ends = [end + n * 2 * arb.pi() for end in ends for n in (-1, 0, 1)]

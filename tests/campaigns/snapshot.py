@@ -25,6 +25,7 @@ import numpy as np
 import numpy.typing as npt
 
 import linkwork as lw
+from linkwork.core.results.limit import Limit
 from tests.campaigns.snapshot_mechanisms import (
     designs_of,
     mechanism_of,
@@ -178,7 +179,7 @@ def _measures(result: Any, columns: Sequence[str], outputs: Iterable[str]) -> li
     return [angle if units.get(name) == angle else others[name] for name in columns]
 
 
-def _add_limits(record: Record, section: str, limits: Iterable[lw.core.results.Limit]) -> None:
+def _add_limits(record: Record, section: str, limits: Iterable[Limit]) -> None:
     limits = tuple(limits)
     record.say(f"{section}.limits.kind", [limit.kind.name for limit in limits])
     record.say(f"{section}.limits.located", [limit.located for limit in limits])
@@ -188,7 +189,7 @@ def _add_limits(record: Record, section: str, limits: Iterable[lw.core.results.L
     record.note(f"{section}.limits.input slack", [_width(limit) for limit in limits])
 
 
-def _width(limit: lw.core.results.Limit) -> float:
+def _width(limit: Limit) -> float:
     low, high = limit.bracket
     return abs(high - low)
 

@@ -13,6 +13,7 @@ import pytest
 
 import linkwork as lw
 from linkwork.circuits import branches, circuit_list
+from linkwork.core.numerics import curve_proof, curve_tracing
 from tests.oracles.four_bar import FourBar
 from tests.oracles.trains import Loop, train
 from tests.thinned import thinned
@@ -256,14 +257,14 @@ def test_curves_of_bold_steps_without_a_proof_are_followed_again(
     name: str, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     expected = lw.example(name).circuits().to_dict()
-    trace, prove, careful = branches.trace, branches.prove_curve, []
+    careful: list[bool] = []
 
     def traced(*arguments: Any) -> Any:
         careful.append(arguments[3] is branches._CAREFUL)
-        return trace(*arguments)
+        return curve_tracing.trace(*arguments)
 
     def refused(*arguments: Any) -> Any:
-        found = prove(*arguments)
+        found = curve_proof.prove_curve(*arguments)
         return found if careful[-1] else replace(found, legs=~found.legs)
 
     monkeypatch.setattr(branches, "trace", traced)

@@ -31,6 +31,7 @@ from linkwork.core.drawing.pose import Pose, lines_within, reached_caption
 from linkwork.core.drawing.scene import Primitive, text_width
 from linkwork.core.foundation.statuses import Status
 from linkwork.core.mechanism.skeleton import DrivenPart
+from linkwork.core.results.limit import LimitKind
 from linkwork.core.results.motion import Motion
 from linkwork.core.results.position import Position
 from tests.drawing.conftest import Sample
@@ -135,8 +136,8 @@ def test_every_limit_is_shown_besides_and_once(four_bar: Sample) -> None:
     limits = [(further.row, further.limit) for further in shown if further.limit is not None]
     # row 120 is row 0 a turn later; an extreme is no limit
     assert limits == [
-        (0, lw.core.results.LimitKind.DEAD_POINT),
-        (40, lw.core.results.LimitKind.CHANGE_POINT),
+        (0, LimitKind.DEAD_POINT),
+        (40, LimitKind.CHANGE_POINT),
     ]
     assert len(shown) == 9
 

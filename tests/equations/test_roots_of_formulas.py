@@ -12,6 +12,7 @@ from click.testing import CliRunner
 
 import linkwork as lw
 from linkwork.core.commands.main import linkwork
+from linkwork.core.results.limit import LimitKind
 from tests.campaigns.roots import root_campaign
 from tests.thinned import thinned
 
@@ -127,7 +128,7 @@ def test_rows_and_the_way_between_them_are_proved() -> None:
 def test_the_dead_point_of_an_equation_is_proved() -> None:
     motion = circle(2.5, 0.25)
     (limit,) = motion.limits
-    assert limit.kind is lw.core.results.LimitKind.DEAD_POINT
+    assert limit.kind is LimitKind.DEAD_POINT
     assert limit.located
     assert limit.bracket[0] <= 2.0 <= limit.bracket[1]
     assert limit.bracket[1] - limit.bracket[0] < 1e-13

@@ -112,10 +112,10 @@ def test_a_name_is_none_that_a_spreadsheet_reads_otherwise(wanted: str, name: st
 def test_a_cell_formula_means_what_the_files_formula_means(formula: str, unit: AngleUnit) -> None:
     numbers = {"a": 1.3, "b": 2.1, "c": 1.7}
     tree = parse(formula)
-    formula = of_radians(tree, unit)
-    text = cell_text(formula, {name: str(number) for name, number in numbers.items()})
+    in_radians = of_radians(tree, unit)
+    text = cell_text(in_radians, {name: str(number) for name, number in numbers.items()})
     assert calculated(text) == pytest.approx(value(tree, numbers, unit), rel=_ROUNDING)
-    assert value_of(formula, numbers) == pytest.approx(value(tree, numbers, unit), rel=_ROUNDING)
+    assert value_of(in_radians, numbers) == pytest.approx(value(tree, numbers, unit), rel=_ROUNDING)
 
 
 def test_names_differ_without_regard_to_capitals() -> None:

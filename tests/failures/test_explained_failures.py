@@ -17,13 +17,14 @@ from linkwork.circuits.failure.reach import Elsewhere
 from linkwork.circuits.failure.remedies import ChangeableLength, model_with
 from linkwork.core.commands.main import linkwork
 from linkwork.core.motion.model import Model
+from linkwork.core.results.failure import Failure
 from tests.failures.test_positions_that_do_not_exist import four_bar
 from tests.thinned import thinned
 
 EXACT = 1e-11  # relative: what closed form and fold differ by is rounding
 
 
-def failure_of(position: lw.Position) -> lw.core.results.Failure:
+def failure_of(position: lw.Position) -> Failure:
     assert position.failure is not None
     return position.failure
 

@@ -13,6 +13,7 @@ import numpy.typing as npt
 import pytest
 
 import linkwork as lw
+from linkwork.core.results.limit import LimitKind
 from tests.failures.test_positions_that_do_not_exist import four_bar
 from tests.oracles.circles import Jansen, SliderCrank
 from tests.oracles.four_bar import FourBar
@@ -72,7 +73,7 @@ def test_parallelograms_stop_at_their_change_points_and_never_flip(
     apart = phasors_of(motion, "rocker") / phasors_of(motion, "crank")
     np.testing.assert_allclose(apart[found], 1, rtol=0, atol=NEAR_SINGULAR)
     assert [limit.input for limit in motion.limits] == [0.0, 180.0]
-    assert {limit.kind for limit in motion.limits} == {lw.core.results.LimitKind.CHANGE_POINT}
+    assert {limit.kind for limit in motion.limits} == {LimitKind.CHANGE_POINT}
 
 
 @pytest.mark.parametrize("step", STEPS)
@@ -87,7 +88,7 @@ def test_a_folding_four_bar_has_one_change_point_at_180_degrees(side: int, step:
     assert motion.certified[inside].all()
     assert_four_bar(motion, bar, side)
     assert [limit.input for limit in motion.limits] == [180.0, 180.0]
-    assert {limit.kind for limit in motion.limits} == {lw.core.results.LimitKind.CHANGE_POINT}
+    assert {limit.kind for limit in motion.limits} == {LimitKind.CHANGE_POINT}
 
 
 @pytest.mark.parametrize("step", STEPS)
@@ -176,7 +177,7 @@ def test_a_rod_as_long_as_the_crank_ends_at_change_points_where_the_block_is_in_
     exact = 4 * np.cos(np.radians(crank[found]))
     np.testing.assert_allclose(motion["s"][found], exact, rtol=0, atol=NEAR_SINGULAR)
     assert [limit.input for limit in motion.limits] == [270.0, 90.0]
-    assert {limit.kind for limit in motion.limits} == {lw.core.results.LimitKind.CHANGE_POINT}
+    assert {limit.kind for limit in motion.limits} == {LimitKind.CHANGE_POINT}
 
 
 @pytest.mark.parametrize("step", STEPS)

@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 import linkwork as lw
+from linkwork.core.results.limit import LimitKind
 
 
 def four_bar(
@@ -66,7 +67,7 @@ def test_non_grashof_rows_out_of_reach_are_exactly_those_between_the_dead_points
     exact = math.degrees(math.acos(11 / 16))
     assert limits == pytest.approx([exact, 360 - exact], rel=1e-14)
     for limit in motion.limits:
-        assert limit.kind is lw.core.results.LimitKind.DEAD_POINT
+        assert limit.kind is LimitKind.DEAD_POINT
         assert limit.located
         assert limit.bracket[0] <= limit.input <= limit.bracket[1]
         assert limit.bracket[1] - limit.bracket[0] < 1e-11
@@ -103,7 +104,7 @@ def test_parallelogram_never_flips_at_its_change_points(
         assert {s for s in motion.status if not s.ok} == {lw.Status.CHANGE_POINT}
     assert [limit.input for limit in motion.limits] == [0.0, 180.0]
     first, second = motion.limits
-    assert {first.kind, second.kind} == {lw.core.results.LimitKind.CHANGE_POINT}
+    assert {first.kind, second.kind} == {LimitKind.CHANGE_POINT}
     assert first.in_line == ("coupler", "rocker")
 
 
@@ -118,7 +119,7 @@ def test_both_tangents_at_the_change_points_of_a_parallelogram() -> None:
 
 def test_a_folding_linkage_has_one_change_point_and_it_is_at_180_degrees() -> None:
     motion = four_bar(1, 3, 2, 4, at=60).sweep()
-    assert {limit.kind for limit in motion.limits} == {lw.core.results.LimitKind.CHANGE_POINT}
+    assert {limit.kind for limit in motion.limits} == {LimitKind.CHANGE_POINT}
     assert [limit.input for limit in motion.limits] == [180.0, 180.0]
     assert motion.found.all()
     assert not motion.added.any()
@@ -244,7 +245,7 @@ def test_a_dead_point_of_two_coupled_loops_is_out_of_reach_and_not_lost() -> Non
         inputs=lw.Input(link="l5"),
     )
     motion = mechanism.sweep()
-    assert {limit.kind for limit in motion.limits} == {lw.core.results.LimitKind.DEAD_POINT}
+    assert {limit.kind for limit in motion.limits} == {LimitKind.DEAD_POINT}
     assert {s for s in motion.status if not s.ok} == {lw.Status.OUT_OF_REACH}
     low, high = motion.limits
     inside = mechanism.sweep(from_=high.input - 1e-6, to=high.input - 5e-7, step=1e-7)

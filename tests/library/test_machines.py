@@ -9,14 +9,13 @@ import pytest
 from scipy.optimize import brentq
 
 import linkwork as lw
+from linkwork.core.results.limit import OutputLimit
 from tests.library.laws import degrees, law, motion_of, same
 from tests.oracles.circles import SliderCrank, circles_meet
 from tests.oracles.four_bar import FourBar
 
 
-def extremes(
-    name: str, quantity: str
-) -> tuple[lw.core.results.OutputLimit, lw.core.results.OutputLimit]:
+def extremes(name: str, quantity: str) -> tuple[OutputLimit, OutputLimit]:
     """The smallest and the largest value of a quantity over a turn, located."""
     found = lw.example(name).sweep(limits_of=[quantity]).output_limits
     return min(found, key=lambda at: at.value), max(found, key=lambda at: at.value)

@@ -12,6 +12,7 @@ import pytest
 import linkwork as lw
 from linkwork.circuits.classification import as_linkage, block_groups, classify
 from linkwork.circuits.reading_loops import Seen
+from linkwork.core.results.check import Classification
 
 FOUR_BAR = {
     "ground": ("O", "C"),
@@ -21,7 +22,7 @@ FOUR_BAR = {
 }
 
 
-def _classified(mechanism: lw.Mechanism) -> lw.core.results.Classification:
+def _classified(mechanism: lw.Mechanism) -> Classification:
     seen = as_linkage(mechanism.model)
     assert isinstance(seen, Seen)
     return classify(seen)

@@ -10,6 +10,7 @@ import pytest
 
 import linkwork as lw
 from linkwork.core.motion.following import turns_freely
+from linkwork.core.results.limit import LimitKind
 from tests.laws.contacts import KINDS, contact, xy
 
 FREE = {
@@ -181,7 +182,7 @@ def test_a_cylinder_through_its_own_end_stops_at_a_named_place() -> None:
     )
     motion = mechanism.sweep()
     (limit,) = motion.limits
-    assert limit.kind is lw.core.results.LimitKind.CHANGE_POINT
+    assert limit.kind is LimitKind.CHANGE_POINT
     assert limit.located
     assert limit.input == pytest.approx(50, abs=1e-12)
     assert motion.status[-1] is lw.Status.CHANGE_POINT
@@ -214,5 +215,5 @@ def test_the_follower_can_drive_the_cam_where_its_law_rises() -> None:
     # in a dwell nothing can drive it: at the top of the rise the motion ends
     ended = mechanism(lw.Input(slider="s", from_=45, to=55, step=0.5)).sweep()
     (limit,) = ended.limits
-    assert limit.kind is lw.core.results.LimitKind.DEAD_POINT
+    assert limit.kind is LimitKind.DEAD_POINT
     assert limit.input == pytest.approx(10 + math.sqrt(40**2 - 1), rel=0, abs=1e-6)

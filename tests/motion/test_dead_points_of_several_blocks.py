@@ -14,6 +14,7 @@ import numpy as np
 import pytest
 
 import linkwork as lw
+from linkwork.core.results.limit import LimitKind
 
 A, B, C, D = 2.0, 2.5, 3.0, 4.0  # crank, coupler, rocker, ground
 POLICIES = ("stop", "straight", "turn")
@@ -80,7 +81,7 @@ def test_dyads_that_lock_at_one_input_are_one_dead_point_of_all(
     limits = sorted(limit.input for limit in motion.limits)
     assert limits == pytest.approx([dead_angle(), 360.0 - dead_angle()], abs=1e-10)
     for limit in motion.limits:
-        assert limit.kind is lw.core.results.LimitKind.DEAD_POINT
+        assert limit.kind is LimitKind.DEAD_POINT
         assert limit.located
         assert len(limit.loops) == len(turned)
         bars = {f"{bar}{k}" for bar in ("coupler", "rocker") for k in range(len(turned))}
@@ -129,15 +130,15 @@ def test_a_branch_ends_at_a_dead_point_where_another_block_has_a_change_point(po
     assert motion.certified[motion.asked][inside].all()
     assert not motion.found[motion.asked][(angle > 180.0) & (angle < 360.0)].any()
     kinds = {(limit.kind, limit.located) for limit in motion.limits}
-    assert kinds == {(lw.core.results.LimitKind.DEAD_POINT, True)}
+    assert kinds == {(LimitKind.DEAD_POINT, True)}
     assert sorted(limit.input for limit in motion.limits) == pytest.approx([0, 180], abs=1e-10)
 
 
 def test_a_change_point_before_a_dead_point_is_still_crossed() -> None:
     motion = parallelogram_with_dyad(181.0).sweep(change_points="straight")
     kinds = {round(limit.input, 6): limit.kind for limit in motion.limits}
-    assert kinds[0.0] is kinds[180.0] is lw.core.results.LimitKind.CHANGE_POINT
-    assert kinds[181.0] is lw.core.results.LimitKind.DEAD_POINT
+    assert kinds[0.0] is kinds[180.0] is LimitKind.CHANGE_POINT
+    assert kinds[181.0] is LimitKind.DEAD_POINT
 
 
 def test_circuits_end_and_explanations_point_to_where_both_dyads_lock() -> None:

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 import linkwork as lw
+from linkwork.core.results.limit import LimitKind
 from tests.oracles.four_bar import FourBar
 
 
@@ -33,7 +34,7 @@ def test_rows_whole_turns_away_are_reached_however_far(
     exact = bar.coupler_end(np.radians(motion["crank"]), 1)
     rows = motion.found & motion.asked
     assert np.abs(motion["B.x"] + 1j * motion["B.y"] - exact)[rows].max(initial=0.0) < 1e-9
-    assert [limit.kind for limit in motion.limits] == [lw.core.results.LimitKind.DEAD_POINT] * 2
+    assert [limit.kind for limit in motion.limits] == [LimitKind.DEAD_POINT] * 2
 
 
 #: Both turn back within a degree of each other.

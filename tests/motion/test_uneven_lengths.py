@@ -11,6 +11,7 @@ from flint import arb, ctx
 
 import linkwork as lw
 from linkwork.core.numerics import path_proof
+from linkwork.core.results.limit import LimitKind
 from tests.oracles.four_bar import FourBar
 from tests.thinned import thinned
 
@@ -71,7 +72,7 @@ def test_dead_points_between_long_links_are_located_and_proved(ratio: float, sha
         "long crank": FourBar(1.5, ratio, 1.2, ratio),
     }[shape]
     motion = four_bar(bar, 90).sweep()
-    assert [limit.kind for limit in motion.limits] == [lw.core.results.LimitKind.DEAD_POINT] * 2
+    assert [limit.kind for limit in motion.limits] == [LimitKind.DEAD_POINT] * 2
     assert motion.certified[motion.found].all()
     exact = sorted(exact_dead_points(bar))
     assert len(exact) == 2

@@ -52,7 +52,7 @@ PRESS = lw.example("crank-press")
         (lambda: batch.from_table("\0"), "'\\x00' cannot be read: embedded null"),
         (lambda: batch.from_table({"A": 1}, 1.5), "the columns must be a list of names, got 1.5"),  # type: ignore[arg-type]
         (lambda: summary_of("x" * 5000), "cannot be read: File name too long"),
-        (lambda: batch.designs_of("A", {}), "the mechanism of a family must be a Model, got 'A'"),  # type: ignore[arg-type]
+        (lambda: batch.designs_of("A", {}), "the mechanism of a family must be a Model, got 'A'"),
         (lambda: BAR.iterates(1.5), "a guess is given by name, as "),  # type: ignore[arg-type]
         (lambda: BAR.inversion(slice(3)), "a name must be a text, got slice(None, 3, None)"),  # type: ignore[arg-type]
         (lambda: BAR.sweep(step=90).place("Z"), 'there is no point "Z" (points: '),

@@ -17,7 +17,7 @@ from linkwork.core.foundation.errors import InputError, MechanismFileError
 from linkwork.core.results.quantities.registry import Call
 from linkwork.core.textfile import schema_of, schema_text
 from linkwork.families import Plan, from_table, grid, latin_hypercube, random
-from linkwork.families.sampling import CHUNK, Normal
+from linkwork.families.sampling import CHUNK, Distribution, Normal
 from linkwork.families.study import read_plan, read_plan_text
 from linkwork.families.study.plan_keys import PLAN as FORM
 from linkwork.families.study.study import (
@@ -238,6 +238,12 @@ def test_the_schema_accepts_plans_and_refuses_wrong_structure() -> None:
     }  # fmt: skip
 
 
+def _drawn(entry: object) -> Distribution:
+    distribution = read_distribution(entry)
+    assert distribution is not None
+    return distribution
+
+
 DIMENSIONS: dict[str, tuple[str, str, Callable[[], Plan]]] = {
     "grid": (
         '"O2 A" = [40, 38]\n"A B" = { from = 110, to = 130, levels = 3 }\n"O4 B" = 81\n',
@@ -253,8 +259,8 @@ DIMENSIONS: dict[str, tuple[str, str, Callable[[], Plan]]] = {
             {
                 "O2 A": Normal(40, 0.1),
                 "A B": (110, 130),
-                "A.x": read_distribution([30.0, 34.0]),
-                "A.y": read_distribution({"from": 10, "likeliest": 20, "to": 30}),
+                "A.x": _drawn([30.0, 34.0]),
+                "A.y": _drawn({"from": 10, "likeliest": 20, "to": 30}),
             },
             3,
         ),

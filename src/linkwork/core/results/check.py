@@ -58,9 +58,9 @@ class LoopType:
     links: tuple[str, ...]
     name: str
     barker: str = ""
-    grashof: bool | None
+    grashof: bool | None  # noqa: V107
     margin: float
-    relative_margin: float
+    relative_margin: float  # noqa: V107
     turns_fully: bool | None
     condition: str
 

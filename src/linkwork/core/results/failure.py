@@ -121,7 +121,7 @@ class Failure:
     remedies: tuple[Remedy, ...] = ()
     nearest_input: Mapping[str, float] = FrozenDict()
     nearest_kind: str = ""
-    nearest_proved: bool = False
+    nearest_proved: bool = False  # noqa: V107
     through: Mapping[str, float] = FrozenDict()
     unreachable: bool = False
     trouble: NewtonTrouble | None = None

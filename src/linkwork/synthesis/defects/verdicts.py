@@ -321,7 +321,7 @@ class _DefectMessages:
             np.abs(self.verdicts.candidates.guided[self.k] - points), reach, self.task.length
         )
 
-    def _obstacle(self) -> str:
+    def _obstacle(self) -> str:  # noqa: V105  # called by the name of the defect
         return "a link meets an obstacle, or passes it too closely to exclude that"
 
     def _not_proved(self) -> str:

@@ -307,8 +307,9 @@ def _urdf_joint(root: Tree.Element, robot: Robot, joint: TreeJoint, couplings: C
 def _polynomial(root: Tree.Element, name: str, form: JointPolynomial, driven: str) -> None:
     low, high = map(numbers, form.series.domain.tolist())
     made = element(root, "coupling", numbers(*form.series.coef.tolist()), joint=name, driven=driven)
-    made.attrib |= {"low": low, "high": high, "error": f"{form.error:.3e}"}
-    made.set("mimic_error", f"{form.line_error:.3e}")
+    errors = (("error", form.error), ("mimic_error", form.line_error))
+    for key, text in (("low", low), ("high", high), *((k, f"{e:.3e}") for k, e in errors)):
+        made.set(key, text)
 
 
 # ----------------------------------------------------------------------

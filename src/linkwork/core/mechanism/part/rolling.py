@@ -129,7 +129,7 @@ class Rolling(NamedPart):
         if self.line is not None:
             turns = ((self.wheel, radius), (self.on, -radius))
             slide = (self.name, linkage.side_of(self.line, self.center))
-            rolls = Coupling(name=self.name, turns=turns, slide=slide)
+            rolls = Coupling(name=self.name, turns=turns, slides=(slide,))
             block = sliding_block(self.name, self.on, self.line, self.center)
             return replace(block.with_pin(self.wheel), couplings=(rolls,))
         assert self.circle is not None
