@@ -13,7 +13,7 @@ from linkwork.core import motion, textfile
 from linkwork.core.api.mechanism import Mechanism
 from linkwork.core.foundation.errors import InputError, Problem, choices
 from linkwork.core.foundation.files import as_path
-from linkwork.core.foundation.values import Constant, Key, ListOf, PlainNumber, Text, as_told
+from linkwork.core.foundation.values import Constant, Key, ListOf, PlainNumber, Text as TextKey, as_told
 from linkwork.core.results.check import CheckReport
 from linkwork.core.results.listing.motion_listing import inputs_text
 from linkwork.core.results.motion import Motion
@@ -38,7 +38,7 @@ SECTIONS = (
 TEMPLATES = ("engineer", "student")
 
 _BYLINE = ("author", "institution", "date")
-_NAMES = ListOf(Text(), "quantity")
+_NAMES = ListOf(TextKey(), "quantity")
 _KEYS = Form(
     "template",
     "The sections of a report and their contents",
@@ -47,14 +47,14 @@ _KEYS = Form(
         Key("format", Constant(FORMAT), "The version of this file format; write format = 1"),
         Key(
             "sections",
-            ListOf(Text(SECTIONS), "section", 1),
+            ListOf(TextKey(SECTIONS), "section", 1),
             "The sections in their order",
             required=True,
         ),
-        Key("title", Text(), "The title; by default the name of the mechanism"),
-        Key("author", Text(), "Who wrote the report"),
-        Key("institution", Text(), "University, company or course"),
-        Key("date", Text(), "The date as it is printed; there is none by default"),
+        Key("title", TextKey(), "The title; by default the name of the mechanism"),
+        Key("author", TextKey(), "Who wrote the report"),
+        Key("institution", TextKey(), "University, company or course"),
+        Key("date", TextKey(), "The date as it is printed; there is none by default"),
         Key("every", PlainNumber(), "Step of the input between rows of the table of the motion"),
         Key("quantities", _NAMES, "Columns of the table and of the plots"),
         Key("tolerances_of", _NAMES, "The quantities whose tolerances are given"),
