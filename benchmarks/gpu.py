@@ -19,10 +19,10 @@ import linkwork as lw
 from linkwork.core.foundation.errors import InputError
 from linkwork.core.mechanism.varied_numbers import varied_numbers
 from linkwork.families import Family, latin_hypercube
-from linkwork.families.compiled.execution import Execution
+from linkwork.families.compiled.compiling import Execution
 from linkwork.families.design_sweep import TablePath
 from linkwork.families.family_motion import FamilyMotion
-from linkwork.families.gpu.kernel import DeviceKernel, graphics_card, name_of
+from linkwork.families.gpu.march import DeviceKernel, graphics_card, name_of
 from linkwork.families.march.march_programs import Steps
 
 __all__ = ["FAMILIES", "Compared", "compared", "family_of", "kernel_speed", "main"]

@@ -21,10 +21,7 @@ sys.path.insert(0, str(ROOT))  # for the register of laws in the tests
 import linkwork as lw
 from linkwork.core import drawing
 from linkwork.core.drawing.scene import LIGHT
-from linkwork.core.drawing.svg import (
-    Inks,
-    inline_svg,
-)
+from linkwork.core.drawing.vector_files import Inks, inline_svg
 from tests.library.laws import LAWS
 
 PICTURES = ROOT / "docs" / "images" / "gallery"

@@ -153,7 +153,7 @@ def measured() -> dict[str, int]:
 
 def _of_calls() -> dict[str, int]:
     import linkwork as lw
-    from linkwork.app.live.mechanism_file import MechanismFile, new_file
+    from linkwork.app.live.opened_file import MechanismFile, new_file
     from linkwork.app.live.requests import MovePoint
     from linkwork.app.live.workbench import Workbench
     from linkwork.core.results.tables import csv_text

@@ -18,8 +18,7 @@ from linkwork.families.study import (
     read_plan_text,
     run_study,
 )
-from linkwork.synthesis.atlas.path_atlas import SHIPPED, PathAtlas
-from linkwork.synthesis.atlas.stored_paths import atlas_of_stores
+from linkwork.synthesis.atlas import SHIPPED, PathAtlas, atlas_of_stores
 
 _COUNT, _CHECKED = 20_000, 300  # designs of each plan
 _WHOLE = "count     = 1_000_000"

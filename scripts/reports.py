@@ -8,8 +8,8 @@ from pathlib import Path
 
 import linkwork as lw
 from linkwork.writers.report.document import Figure, Table
-from linkwork.writers.report.findings import Findings, template_of
 from linkwork.writers.report.report import document_of, report_of
+from linkwork.writers.report.sections import Findings, template_of
 
 __all__ = ["READERS", "read_report"]
 

@@ -33,10 +33,7 @@ from linkwork.synthesis.precision.solving import (
     member_of_arrays,
     stored_member,
 )
-from linkwork.synthesis.six_bars.watt import (
-    SHIPPED as SHIPPED_WATT,
-    WATT,
-)
+from linkwork.synthesis.six_bars import SHIPPED as SHIPPED_WATT, WATT
 
 #: The shipped files and their families.
 _FILES: dict[str, tuple[Path, tuple[NamedFamily, ...]]] = {

@@ -24,10 +24,10 @@ import numpy as np
 
 import linkwork as lw
 from linkwork.circuits.homotopy import parameter_roots as start_sets
-from linkwork.circuits.homotopy.bilinear_family import Structure
 from linkwork.circuits.homotopy.dead_point_family import DeadPointFamily
 from linkwork.circuits.homotopy.isolated_roots import (
     Solved,
+    Structure,
     solve_random_member,
 )
 from linkwork.core.foundation.files import CACHE_VARIABLE

@@ -11,7 +11,7 @@ import numpy as np
 
 import linkwork as lw
 from linkwork.core.drawing.scene import Arc, Disc, Hatch, Polygon, Polyline, Primitive
-from linkwork.core.drawing.tikz import tikz_picture
+from linkwork.core.drawing.vector_files import tikz_picture
 from linkwork.core.foundation.arrays import Array
 from linkwork.core.foundation.errors import InputError
 from linkwork.core.foundation.units import LENGTHS

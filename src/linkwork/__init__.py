@@ -72,8 +72,7 @@ if TYPE_CHECKING:
         Slot as Slot,
     )
     from linkwork.core.mechanism.part.rolling import Rolling as Rolling
-    from linkwork.core.mechanism.part.springs import Load as Load, Spring as Spring
-    from linkwork.core.mechanism.part.weld import Weld as Weld
+    from linkwork.core.mechanism.part.springs import Load as Load, Spring as Spring, Weld as Weld
     from linkwork.core.numerics.newton import NewtonOptions as NewtonOptions
     from linkwork.core.results.motion import Motion as Motion
     from linkwork.core.results.position import Position as Position

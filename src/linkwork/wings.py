@@ -135,7 +135,7 @@ WINGS = (
         writers={
             "workbook": Writer("linkwork.writers.workbook.workbook:write_workbook", (".xlsx",)),
             "program": Writer(
-                "linkwork.writers.code.languages:write_program", (".py", ".m", ".c", ".js", ".st")
+                "linkwork.writers.code.programs:write_program", (".py", ".m", ".c", ".js", ".st")
             ),
             "plates": Writer(
                 "linkwork.writers.plates.files:write_plates", (".dxf", ".stl", ".3mf", ".step")

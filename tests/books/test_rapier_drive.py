@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import linkwork as lw
-from linkwork.core.results.limit import LimitKind
+from linkwork.core.results.failure import LimitKind
 
 FULL = {"θ13": 188.572556, "θ15": 175.143712, "θ14": 67.394934, "s16": 216.940343}
 FULL_SLOPE = {"θ13": -0.031126, "θ15": -0.113395, "θ14": 0.705483, "s16": -168.581}

@@ -25,8 +25,8 @@ from unittest.mock import patch
 from click.testing import CliRunner
 
 import linkwork as lw
-from linkwork.app.live.bench import Bench
-from linkwork.app.live.mechanism_file import MechanismFile
+from linkwork.app.live.opened_file import MechanismFile
+from linkwork.app.live.session import Bench
 from linkwork.core.commands.main import linkwork as program
 from linkwork.synthesis.solvers.solving import solve_task
 from linkwork.wings import WINGS

@@ -16,7 +16,7 @@ from flint import arb, ctx
 
 import linkwork as lw
 from linkwork.core.mechanism.loops import Loops
-from linkwork.core.results.limit import Limit, LimitKind
+from linkwork.core.results.failure import Limit, LimitKind
 from tests.described import described_as
 
 __all__ = ["NearChangePoint", "dead_point_campaign"]

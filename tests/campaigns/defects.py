@@ -9,7 +9,7 @@ import numpy as np
 from linkwork import Mechanism
 from linkwork.core.foundation.arrays import Array
 from linkwork.synthesis.defects.verdicts import DefectKind, judge
-from linkwork.synthesis.loops.candidates import Candidates, Drive, LoopKind
+from linkwork.synthesis.loops.limits import Candidates, Drive, LoopKind
 from linkwork.synthesis.poses.guiding_linkage import Design, linkage_of
 from linkwork.synthesis.tasks.conditions import PrecisionPosition, Wishes
 from linkwork.synthesis.tasks.task import Task

@@ -11,7 +11,7 @@ import numpy as np
 
 from linkwork.core.textfile.reader import read_text
 from linkwork.core.textfile.writer import write_text
-from linkwork.readers.formats import FORMATS, read_foreign
+from linkwork.readers.importing import FORMATS, read_foreign
 from tests.campaigns.fuzzing.odd import NAMES, NUMBERS, pick
 from tests.campaigns.fuzzing.texts import changed_bytes
 from tests.campaigns.fuzzing.witness import Witness

@@ -15,7 +15,7 @@ from pathlib import Path
 from typing import Any
 
 import linkwork as lw
-from linkwork.app.live.mechanism_file import MechanismFile
+from linkwork.app.live.opened_file import MechanismFile
 from linkwork.app.live.server import LiveServer
 from linkwork.app.live.workbench import Workbench
 from linkwork.core.mechanism.linkage import Draft

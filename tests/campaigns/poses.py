@@ -7,7 +7,7 @@ from collections import Counter
 import numpy as np
 
 from linkwork.core.foundation.arrays import Array, ComplexArray
-from linkwork.synthesis.poses.dyad_set import DyadSet, PoseSet
+from linkwork.synthesis.poses.burmester import DyadSet, PoseSet
 from linkwork.synthesis.poses.dyads import solve_five_poses
 from tests.oracles.burmester import crank_turns
 

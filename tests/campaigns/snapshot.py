@@ -25,7 +25,7 @@ import numpy as np
 import numpy.typing as npt
 
 import linkwork as lw
-from linkwork.core.results.limit import Limit
+from linkwork.core.results.failure import Limit
 from tests.campaigns.snapshot_mechanisms import (
     designs_of,
     mechanism_of,

@@ -9,9 +9,9 @@ import numpy.typing as npt
 
 from linkwork.core.numerics.block_solver import BlockSolver
 from linkwork.core.numerics.branch_tracking import InputPath
+from linkwork.core.numerics.newton import SolvedRows
 from linkwork.core.numerics.path_proof import prove_path
 from linkwork.core.numerics.position_proof import prove, reach, rounding_of_inputs, steps_connected
-from linkwork.core.numerics.system import SolvedRows
 from linkwork.core.table.loop_table import LoopTable
 from tests.campaigns.certificates import Verdict
 from tests.campaigns.positions import closed

@@ -18,7 +18,7 @@ from linkwork.core.foundation.arrays import Array, ComplexArray
 from linkwork.core.foundation.names import GROUND
 from linkwork.core.mechanism.linkage import Draft
 from linkwork.core.results.motion import Motion
-from linkwork.synthesis.improvement.whole_motion import Contact, WholeMotion
+from linkwork.synthesis.improvement.proved_design import Contact, WholeMotion
 from tests.library_mechanisms import driven_examples, read_example
 
 __all__ = ["EVERY", "distances", "whole_motion_campaign"]

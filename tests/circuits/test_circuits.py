@@ -13,7 +13,7 @@ import pytest
 
 import linkwork as lw
 from linkwork.circuits import branches, circuit_list
-from linkwork.core.numerics import curve_proof, curve_tracing
+from linkwork.core.numerics import curve_tracing, path_proof as curve_proof
 from tests.oracles.four_bar import FourBar
 from tests.oracles.trains import Loop, train
 from tests.thinned import thinned

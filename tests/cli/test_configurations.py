@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 
 import linkwork as lw
-from linkwork.circuits.listing import path_sentence
+from linkwork.circuits.circuit_list import path_sentence
 from linkwork.circuits.results import PathCount
 from tests.cli.conftest import Run
 

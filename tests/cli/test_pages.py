@@ -12,8 +12,8 @@ import click
 import pytest
 
 from linkwork import example_text, examples, load, wings
-from linkwork.core.commands.check import check_lines
 from linkwork.core.commands.main import linkwork
+from linkwork.core.commands.solve import check_lines
 from tests.cli.conftest import FILES, Run
 from tests.thinned import thinned
 

@@ -282,7 +282,7 @@ def test_drawn_circuits_show_the_unknowns_or_what_is_asked(run: Run, folder: Pat
 def test_unknowns_that_are_left_out_are_told(
     run: Run, monkeypatch: pytest.MonkeyPatch, folder: Path
 ) -> None:
-    monkeypatch.setattr("linkwork.writers.charts.circuits.MOST_PANELS", 1)
+    monkeypatch.setattr("linkwork.writers.charts.lines.MOST_PANELS", 1)
     done = run("circuits", "four-bar.toml", "--draw", "a.svg")
     assert done.stdout.endswith("\nWrote a.svg: the first 1 of 2 unknowns; --of NAME chooses.\n")
     named = run("circuits", "four-bar.toml", "--draw", "a.svg", "--of", "mu")

@@ -7,7 +7,7 @@ import math
 import pytest
 
 from linkwork.core.commands.terminal import fields, table_lines
-from linkwork.core.results.listing.motion_listing import Column, fixed, lengths, short, significant
+from linkwork.core.results.listing import Column, fixed, lengths, short, significant
 
 
 def test_decimal_points_stand_below_each_other_and_units_behind() -> None:

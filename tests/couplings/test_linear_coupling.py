@@ -10,7 +10,7 @@ import pytest
 
 import linkwork as lw
 from linkwork.app.live.palette import PALETTE
-from linkwork.core.textfile.text_edits import TextEdits
+from linkwork.core.textfile.writer import TextEdits
 from linkwork.design.edits.unit_change import change_units
 
 JACKS = """\

@@ -10,9 +10,9 @@ import pytest
 
 import linkwork as lw
 from linkwork.core.foundation.arrays import Array
-from linkwork.synthesis import lane_problems
+from linkwork.synthesis import lane_least_squares as lane_problems
 from linkwork.synthesis.improvement import (
-    curve_starts,
+    curve_fit as curve_starts,
     fit_problem,
     fit_problem as mechanism_fit,
     fronts as front_designs,

@@ -9,9 +9,9 @@ import pytest
 
 import linkwork as lw
 from linkwork.core.foundation.errors import InputError
+from linkwork.synthesis import suggesting
 from linkwork.synthesis.defects.verdicts import DefectKind
-from linkwork.synthesis.suggestion import suggesting
-from linkwork.synthesis.suggestion.suggesting import Origin
+from linkwork.synthesis.suggesting import Origin
 from linkwork.synthesis.tasks.task import Task
 
 

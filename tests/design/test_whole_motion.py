@@ -12,9 +12,9 @@ from linkwork.core.foundation.names import GROUND
 from linkwork.core.mechanism.linkage import Draft
 from linkwork.core.motion.extremes import motions_of_points
 from linkwork.core.motion.model import model_of
-from linkwork.synthesis.improvement import whole_motion
+from linkwork.synthesis.improvement import proved_design as whole_motion
 from linkwork.synthesis.improvement.goals import BetweenRows
-from linkwork.synthesis.improvement.whole_motion import WholeMotion
+from linkwork.synthesis.improvement.proved_design import WholeMotion
 from tests.campaigns import whole_motions as campaign
 from tests.library_mechanisms import driven_examples, read_example
 

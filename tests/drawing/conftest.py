@@ -20,7 +20,7 @@ from linkwork.core.results.position import Position
 from linkwork.core.results.quantities.definition import MechanismNames
 from linkwork.core.results.quantities.registry import Quantities
 from linkwork.core.results.quantity import Kind, Quantity, Units
-from linkwork.core.results.series import Series
+from linkwork.core.results.tables import Series
 
 Places = dict[str, complex]
 

@@ -16,11 +16,11 @@ import linkwork as lw
 from linkwork.core.drawing import LIGHT, render
 from linkwork.core.foundation.arrays import Array
 from linkwork.core.foundation.errors import InputError, UnknownNameError
-from linkwork.writers.charts import circuits as circuit_chart_module
+from linkwork.writers.charts import lines as circuit_chart_module
 from linkwork.writers.charts.axes import LIGHT_CHART, ChartAxes
 from linkwork.writers.charts.chart import Chart, Panel
-from linkwork.writers.charts.circuits import branch_chart, circuit_chart
 from linkwork.writers.charts.kinds import motion_chart
+from linkwork.writers.charts.lines import branch_chart, circuit_chart
 from tests.drawing.pages import (
     assert_page_is_clear,
     axes_of,

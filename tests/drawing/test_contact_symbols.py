@@ -27,7 +27,7 @@ from linkwork.core.drawing.wheels import tooth_outline, tooth_phases
 from linkwork.core.foundation.arrays import ComplexArray
 from linkwork.core.mechanism.bodies import Contour, DiscFigure as Wheel
 from linkwork.core.mechanism.part.gears import BeltRun
-from linkwork.core.mechanism.part.weld import RigidJoint
+from linkwork.core.mechanism.part.springs import RigidJoint
 
 EXAMPLES = [
     "planetary-gear", "planetary-differential", "cardan-circles", "geared-five-bar",

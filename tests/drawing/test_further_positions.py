@@ -31,7 +31,7 @@ from linkwork.core.drawing.pose import Pose, lines_within, reached_caption
 from linkwork.core.drawing.scene import Primitive, text_width
 from linkwork.core.foundation.statuses import Status
 from linkwork.core.mechanism.skeleton import DrivenPart
-from linkwork.core.results.limit import LimitKind
+from linkwork.core.results.failure import LimitKind
 from linkwork.core.results.motion import Motion
 from linkwork.core.results.position import Position
 from tests.drawing.conftest import Sample

@@ -18,7 +18,7 @@ from linkwork.core.foundation.units import AngleUnit
 from linkwork.writers.charts.axes import LIGHT_CHART, tick_step
 from linkwork.writers.charts.chart import Chart
 from linkwork.writers.charts.kinds import motion_chart
-from linkwork.writers.charts.plotting import motion_plot
+from linkwork.writers.charts.plane import motion_plot
 from tests.drawing.pages import (
     assert_drawn,
     axes_of,

@@ -18,8 +18,8 @@ from linkwork.core.foundation.arrays import Array
 from linkwork.core.foundation.errors import InputError, UnknownNameError
 from linkwork.core.mechanism.skeleton import dyads_of
 from linkwork.writers.charts.axes import LIGHT_CHART
-from linkwork.writers.charts.circuits import branch_chart, circuit_chart
-from linkwork.writers.charts.plotting import motion_plot
+from linkwork.writers.charts.lines import branch_chart, circuit_chart
+from linkwork.writers.charts.plane import motion_plot
 from tests.drawing.pages import (
     assert_drawn,
     axes_of,

@@ -21,7 +21,7 @@ from linkwork.core.drawing import LIGHT, render
 from linkwork.core.drawing.scene import DARK, THEMES, Theme
 from linkwork.core.foundation.errors import InputError, UnknownNameError
 from linkwork.writers.charts.axes import DARK_CHART, LIGHT_CHART, ChartTheme, chart_theme
-from linkwork.writers.charts.plotting import circuits_plot, motion_plot
+from linkwork.writers.charts.plane import circuits_plot, motion_plot
 from tests.drawing.pages import assert_page_is_clear, left_title, svg_texts
 from tests.thinned import thinned
 

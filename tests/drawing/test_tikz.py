@@ -9,12 +9,12 @@ import numpy as np
 import pytest
 
 import linkwork as lw
+from linkwork.core.drawing.matplotlib_writer import write
 from linkwork.core.drawing.mechanism_scene import configuration_sheet
-from linkwork.core.drawing.picture_file import write
 from linkwork.core.drawing.scene import Disc, Text
-from linkwork.core.drawing.tikz import picture_scale, tikz_picture
+from linkwork.core.drawing.vector_files import picture_scale, tikz_picture
 from linkwork.core.foundation.names import as_latex
-from linkwork.writers.charts.plotting import motion_plot
+from linkwork.writers.charts.plane import motion_plot
 from tests.library_mechanisms import read_example
 
 _ROUNDED = 0.00051  # mm: coordinates have three digits after the point

@@ -8,11 +8,11 @@ import pytest
 
 import linkwork as lw
 from linkwork.core.drawing import Polyline, Role, Scene, SceneOptions, Text, scene_of
+from linkwork.core.drawing.dimensions import polygon
 from linkwork.core.drawing.pose import Pose
-from linkwork.core.drawing.vectors import polygon
 from linkwork.core.foundation.errors import InputError
 from linkwork.core.motion import vector_loops
-from linkwork.core.results.vector_loop import LoopVector, VectorLoop
+from linkwork.core.results.position import LoopVector, VectorLoop
 from tests.drawing.conftest import Sample
 from tests.drawing.shared_area import shared_area
 

@@ -12,7 +12,7 @@ from click.testing import CliRunner
 
 import linkwork as lw
 from linkwork.core.commands.main import linkwork
-from linkwork.core.results.listing.motion_listing import whole_energy
+from linkwork.core.results.listing import whole_energy
 
 FEED = 0.02  # m, of the cam's lift
 

@@ -13,8 +13,8 @@ import linkwork as lw
 from linkwork.contacts.profiles import Outline
 from linkwork.core.expression.grammar import parse
 from linkwork.core.expression.values import precise_value
+from linkwork.core.foundation.arrays import UNIT_ROUNDOFF
 from linkwork.core.foundation.precise import Precise
-from linkwork.core.foundation.rounding import UNIT_ROUNDOFF
 from linkwork.core.foundation.units import AngleUnit
 from linkwork.core.mechanism.linkage import Linkage
 from linkwork.families import designs_of

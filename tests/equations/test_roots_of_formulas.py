@@ -12,7 +12,7 @@ from click.testing import CliRunner
 
 import linkwork as lw
 from linkwork.core.commands.main import linkwork
-from linkwork.core.results.limit import LimitKind
+from linkwork.core.results.failure import LimitKind
 from tests.campaigns.roots import root_campaign
 from tests.thinned import thinned
 

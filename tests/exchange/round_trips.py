@@ -15,7 +15,7 @@ from linkwork.core.foundation.units import LENGTHS
 from linkwork.core.mechanism.inputs import Input
 from linkwork.core.mechanism.linkage import Linkage
 from linkwork.core.results.motion import Motion
-from linkwork.readers.formats import read_foreign, write_foreign
+from linkwork.readers.importing import read_foreign, write_foreign
 from linkwork.writers.robot.files import robot_of
 
 __all__ = ["RoundTrip", "robot_round_trip", "round_trip"]

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from linkwork.readers.formats import FORMATS
+from linkwork.readers.importing import FORMATS
 from tests.campaigns.imports import import_campaign
 
 

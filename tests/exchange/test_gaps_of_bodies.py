@@ -11,7 +11,7 @@ import linkwork as lw
 from linkwork.core.foundation.errors import MechanismFileError
 from linkwork.core.mechanism.linkage import Linkage
 from linkwork.readers.assembly import LeftOut
-from linkwork.readers.formats import read_foreign
+from linkwork.readers.importing import read_foreign
 
 _CRANK = """
 <body name="crank"><joint name="O" axis="0 0 1"/>

@@ -14,7 +14,7 @@ import pytest
 import linkwork as lw
 from linkwork.core.mechanism.inputs import Input
 from linkwork.core.mechanism.linkage import Linkage
-from linkwork.readers.formats import FORMATS, read_foreign
+from linkwork.readers.importing import FORMATS, read_foreign
 from tests.exchange.samples import GEOGEBRA, SAMPLES, dxf_text, packed
 
 _ROWS: dict[str, Any] = {"from_": 53.13010235415598, "to": 413.13010235415598, "step": 45.0}

@@ -9,7 +9,7 @@ import sys
 import pytest
 
 import linkwork as lw
-from linkwork.readers.formats import read_foreign
+from linkwork.readers.importing import read_foreign
 from tests.exchange.samples import GEOGEBRA, SAMPLES, dxf_text
 
 _ARM = """\
@@ -113,7 +113,7 @@ def test_a_command_of_eleven_objects_keeps_their_order() -> None:
 
 def test_an_import_does_not_depend_on_the_order_of_sets() -> None:
     script = (
-        "import sys; from linkwork.readers.formats import read_foreign as read\n"
+        "import sys; from linkwork.readers.importing import read_foreign as read\n"
         "found = read(sys.argv[1].encode(), 'chain.pyslvs'); "
         "print(found.description, found.left_out)"
     )

@@ -9,7 +9,7 @@ import pytest
 
 import linkwork as lw
 from linkwork.core.mechanism.linkage import Linkage
-from linkwork.readers.formats import WRITERS, read_foreign
+from linkwork.readers.importing import WRITERS, read_foreign
 from tests.exchange.round_trips import RoundTrip, robot_round_trip, round_trip
 
 #: Roundings of the sweep, larger close to a change point.

@@ -18,12 +18,11 @@ import linkwork as lw
 from linkwork.core.foundation.errors import InputError
 from linkwork.core.mechanism.bodies import DiscFigure
 from linkwork.core.motion.extremes import boxes_of, variables_of
-from linkwork.writers.plates.bodies import BodyPoses
 from linkwork.writers.plates.construction import Construction
 from linkwork.writers.plates.files import assembled, box, dxf_of, in_rows, plates_of
-from linkwork.writers.plates.gears import Wheel, involute_outline, touches
-from linkwork.writers.plates.outlines import Outline, circle, rounded
+from linkwork.writers.plates.outlines import BodyPoses, Outline, circle, rounded
 from linkwork.writers.plates.stack import Conflict, find_layers, obstacles, stack_of
+from linkwork.writers.plates.wheels import Wheel, involute_outline, touches
 from tests.export.coarse import coarse
 from tests.export.plate_checks import hole_error, made, overlaps, simple, solid_error
 from tests.library_mechanisms import read_example

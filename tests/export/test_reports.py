@@ -19,7 +19,7 @@ from click.testing import CliRunner
 import linkwork as lw
 from linkwork import example_text
 from linkwork.core.commands.main import linkwork
-from linkwork.core.results.listing.motion_listing import Column
+from linkwork.core.results.listing import Column
 from linkwork.writers.report import report as report_module
 from linkwork.writers.report.document import (
     Block,
@@ -33,11 +33,9 @@ from linkwork.writers.report.document import (
     printed,
     split_columns,
 )
-from linkwork.writers.report.docx import docx_bytes
-from linkwork.writers.report.findings import SECTIONS, Findings, Template, template_of
-from linkwork.writers.report.html import html_bytes
-from linkwork.writers.report.pdf import document_data, pdf_bytes
+from linkwork.writers.report.rendering import document_data, docx_bytes, html_bytes, pdf_bytes
 from linkwork.writers.report.report import document_of, report_of, save_report
+from linkwork.writers.report.sections import SECTIONS, Findings, Template, template_of
 from tests.export.coarse import coarse
 from tests.library_mechanisms import read_example
 

@@ -20,8 +20,7 @@ from linkwork.core.foundation.units import AngleUnit
 from linkwork.core.mechanism.linkage import Linkage
 from linkwork.writers.formulas.closure_formulas import cell_text, of_radians, value_of
 from linkwork.writers.workbook import workbook
-from linkwork.writers.workbook.book import CellNames
-from linkwork.writers.workbook.layout import FastCells
+from linkwork.writers.workbook.book import CellNames, FastCells
 from tests.described import described_as
 from tests.export.coarse import coarse
 from tests.oracles.spreadsheet import Spreadsheet, calculated

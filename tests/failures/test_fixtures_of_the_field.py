@@ -13,7 +13,7 @@ import numpy.typing as npt
 import pytest
 
 import linkwork as lw
-from linkwork.core.results.limit import LimitKind
+from linkwork.core.results.failure import LimitKind
 from tests.failures.test_positions_that_do_not_exist import four_bar
 from tests.oracles.circles import Jansen, SliderCrank
 from tests.oracles.four_bar import FourBar

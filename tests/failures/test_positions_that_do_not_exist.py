@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 import linkwork as lw
-from linkwork.core.results.limit import LimitKind
+from linkwork.core.results.failure import LimitKind
 
 
 def four_bar(

@@ -13,8 +13,7 @@ from scipy.optimize import brentq
 import linkwork as lw
 from linkwork.core.foundation.errors import MechanismError, MechanismFileError
 from linkwork.core.mechanism.linkage import Linkage
-from linkwork.core.textfile.text_edits import TextEdits
-from linkwork.core.textfile.writer import write_text
+from linkwork.core.textfile.writer import TextEdits, write_text
 from linkwork.design.edits.entries import copy_selection, rename
 from tests.described import described_as
 from tests.forces.random_loads import loaded, rubbed

@@ -6,7 +6,7 @@ import pickle
 
 import pytest
 
-from linkwork.core.foundation.containers import Deferred
+from linkwork.core.foundation.arrays import Deferred
 
 
 def test_a_value_is_computed_once_and_only_when_it_is_asked_for() -> None:

@@ -20,21 +20,21 @@ import linkwork as lw
 from linkwork.core.foundation.arrays import Array, allocate_aligned
 from linkwork.core.record.printing import trial_source
 from linkwork.core.record.recorder import LANES, SOURCES, Op
-from linkwork.families.compiled import code_cache as kernel_cache, execution
-from linkwork.families.compiled.code_cache import (
+from linkwork.families.compiled import compiling as execution, compiling as kernel_cache
+from linkwork.families.compiled.compiling import (
+    CodeFiles,
+    Execution,
     is_cached,
     is_compiled,
     load_compiled,
     say_that_it_compiles,
     sources_digest,
 )
-from linkwork.families.compiled.compiling import CodeFiles
-from linkwork.families.compiled.execution import Execution
 from linkwork.families.compiled.interpreter import run
+from linkwork.families.design_sweep import block_parts
 from linkwork.families.march import step_trial as step_control, sweep_kernel
 from linkwork.families.march.march_programs import Steps
 from linkwork.families.march.sweep_kernel import SweepKernel
-from linkwork.families.topologies import block_parts
 
 PLACES = 5
 _CODE_FILES: Any = CodeFiles  # whose methods have no types
@@ -269,7 +269,7 @@ def test_every_source_that_is_compiled_has_a_part_in_the_digest(tmp_path: Path) 
     changed = tmp_path / "linkwork"
     shutil.copytree(package, changed, ignore=shutil.ignore_patterns("__pycache__", "*.npz"))
     code = (
-        "import sys; from linkwork.families.compiled.code_cache import sources_digest as d; "
+        "import sys; from linkwork.families.compiled.compiling import sources_digest as d; "
         "print(d().hex())"
     )
 

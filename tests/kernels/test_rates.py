@@ -10,8 +10,8 @@ import linkwork as lw
 from linkwork.core.motion.model import Model, leading_input
 from linkwork.core.record.closure import BlockPart
 from linkwork.core.table.loop_table import LoopTable
-from linkwork.families.march.places import at_places
-from linkwork.families.march.rate_programs import PlaceProgram, PlaceWriter
+from linkwork.families.march.march_programs import PlaceProgram, PlaceWriter
+from linkwork.families.march.sweep_kernel import at_places
 
 Array = npt.NDArray[np.float64]
 ROWS = 5

@@ -9,7 +9,7 @@ import numpy.typing as npt
 
 import linkwork as lw
 from linkwork.core.results.quantity import Kind
-from linkwork.core.results.series import Series
+from linkwork.core.results.tables import Series
 
 __all__ = ["CLOSE", "agree", "angles_of", "internal", "series_of"]
 

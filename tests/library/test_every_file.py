@@ -12,7 +12,7 @@ import pytest
 import linkwork as lw
 from linkwork.core.foundation.statuses import Certification
 from linkwork.core.mechanism.linkage import Linkage
-from linkwork.core.textfile.schema import json_schema
+from linkwork.core.textfile.keys import json_schema
 from tests.library.laws import LAWS, motion_of
 from tests.library_mechanisms import driven_examples, read_example
 

@@ -9,7 +9,7 @@ import pytest
 from scipy.optimize import brentq
 
 import linkwork as lw
-from linkwork.core.results.limit import OutputLimit
+from linkwork.core.results.failure import OutputLimit
 from tests.library.laws import degrees, law, motion_of, same
 from tests.oracles.circles import SliderCrank, circles_meet
 from tests.oracles.four_bar import FourBar

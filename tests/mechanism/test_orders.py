@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 import linkwork as lw
-from linkwork.core.commands.check import check_lines
+from linkwork.core.commands.solve import check_lines
 from linkwork.core.mechanism.link_shape import (
     Distance,
     Given,

@@ -10,7 +10,7 @@ import pytest
 import linkwork as lw
 from linkwork.circuits.arcs import Explorer, is_regular
 from linkwork.circuits.assembling import positions_at
-from linkwork.circuits.followed_circuit import explorer_of
+from linkwork.circuits.circuit_sweep import explorer_of
 from linkwork.core.foundation.arrays import Array
 from linkwork.core.motion.following import Drive
 from tests.oracles.trains import Loop, train

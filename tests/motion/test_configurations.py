@@ -13,7 +13,7 @@ import linkwork as lw
 from linkwork import Completeness
 from linkwork.circuits import assembling, assembling as block_roots
 from linkwork.circuits.assembling import positions_at
-from linkwork.circuits.homotopy import bilinear_family, isolated_roots
+from linkwork.circuits.homotopy import isolated_roots, isolated_roots as bilinear_family
 from linkwork.circuits.homotopy.path_tracking import PathOptions
 from tests.campaigns.configurations import judge_truss
 from tests.laws.mechanisms import NAMES, mechanism_of

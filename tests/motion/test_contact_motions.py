@@ -10,7 +10,7 @@ import pytest
 
 import linkwork as lw
 from linkwork.core.motion.following import turns_freely
-from linkwork.core.results.limit import LimitKind
+from linkwork.core.results.failure import LimitKind
 from tests.laws.contacts import KINDS, contact, xy
 
 FREE = {

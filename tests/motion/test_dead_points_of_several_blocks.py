@@ -14,7 +14,7 @@ import numpy as np
 import pytest
 
 import linkwork as lw
-from linkwork.core.results.limit import LimitKind
+from linkwork.core.results.failure import LimitKind
 
 A, B, C, D = 2.0, 2.5, 3.0, 4.0  # crank, coupler, rocker, ground
 POLICIES = ("stop", "straight", "turn")

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import linkwork as lw
-from linkwork.core.results.limit import LimitKind
+from linkwork.core.results.failure import LimitKind
 from tests.oracles.four_bar import FourBar
 
 

@@ -11,7 +11,7 @@ from flint import arb, ctx
 
 import linkwork as lw
 from linkwork.core.numerics import path_proof
-from linkwork.core.results.limit import LimitKind
+from linkwork.core.results.failure import LimitKind
 from tests.oracles.four_bar import FourBar
 from tests.thinned import thinned
 

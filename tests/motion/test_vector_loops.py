@@ -7,7 +7,7 @@ import pytest
 import linkwork as lw
 from linkwork.core.foundation.errors import InputError
 from linkwork.core.motion import vector_loops
-from linkwork.core.results.vector_loop import VectorLoop
+from linkwork.core.results.position import VectorLoop
 
 MECHANISMS = [
     "four-bar",

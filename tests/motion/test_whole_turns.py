@@ -11,7 +11,7 @@ import pytest
 import linkwork as lw
 from linkwork.core.foundation.statuses import Certification
 from linkwork.core.foundation.units import AngleUnit
-from linkwork.core.motion.whole_turns import Lap
+from linkwork.core.motion.following import Lap
 from linkwork.core.results.motion import Motion
 from tests.failures.test_positions_that_do_not_exist import four_bar
 from tests.oracles.exact_turns import TURN

@@ -11,7 +11,7 @@ from typing import Any
 import linkwork as lw
 from linkwork.core.equations.frames import Frames
 from linkwork.core.equations.model import LoopEquations, Term
-from linkwork.core.equations.parts import rows_of_parts
+from linkwork.core.equations.writing import rows_of_parts
 from linkwork.core.foundation.names import GROUND
 from linkwork.core.mechanism.description import Problems
 from linkwork.core.mechanism.linkage import Linkage

@@ -4,9 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from linkwork.circuits.homotopy.bilinear_family import structure_of
-from linkwork.circuits.homotopy.isolated_roots import isolated_roots
-from linkwork.circuits.homotopy.polynomial_system import Roots
+from linkwork.circuits.homotopy.bilinear_homotopy import Roots
+from linkwork.circuits.homotopy.isolated_roots import isolated_roots, structure_of
 from linkwork.core.numerics.bilinear import BilinearSystem
 
 __all__ = ["THETA_18", "TRUSS_18", "angles_only", "random_triad", "real_solution", "roots_of"]

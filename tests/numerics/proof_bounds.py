@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from linkwork.core.foundation.arrays import Array
 from linkwork.core.numerics.kantorovich import Bounds, Majorant, expansion
-from linkwork.core.numerics.system import System
+from linkwork.core.numerics.newton import System
 
 __all__ = ["bounds"]
 

@@ -8,15 +8,14 @@ import numpy as np
 import pytest
 
 from linkwork.circuits.homotopy import isolated_roots as roots_module
-from linkwork.circuits.homotopy.bilinear_family import structure_of
 from linkwork.circuits.homotopy.bilinear_homotopy import (
     ParameterHomotopy,
     StartHomotopy,
     null_space,
+    polish_roots,
 )
+from linkwork.circuits.homotopy.isolated_roots import quadratic_roots, structure_of
 from linkwork.circuits.homotopy.path_tracking import PathOptions
-from linkwork.circuits.homotopy.polynomial_system import polish_roots
-from linkwork.circuits.homotopy.quadratic_roots import quadratic_roots
 from linkwork.core.numerics.bilinear import BilinearSystem, prove_roots
 from tests.numerics.bilinear_systems import (
     THETA_18,

@@ -17,11 +17,10 @@ from linkwork.core.equations.compiling import ParametrizedTable
 from linkwork.core.foundation.statuses import CircuitEnd
 from linkwork.core.motion.model import leading_input
 from linkwork.core.motion.solving import first_position
-from linkwork.core.numerics.branch_tracking import InputPath
-from linkwork.core.numerics.curve_proof import prove_curve
+from linkwork.core.numerics.branch_tracking import InputPath, same_position
 from linkwork.core.numerics.curve_tracing import Curve, CurveOptions, Leg, trace
-from linkwork.core.numerics.local_parametrization import same_position
 from linkwork.core.numerics.newton import NewtonOptions
+from linkwork.core.numerics.path_proof import prove_curve
 from linkwork.core.numerics.turning_point import TurningPoint
 from tests.numerics.systems import four_bar_table
 from tests.oracles.four_bar import FourBar

@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 
 from linkwork.circuits.homotopy import isolated_roots as roots_module
+from linkwork.circuits.homotopy.bilinear_homotopy import polish_roots
 from linkwork.circuits.homotopy.dead_point_family import DeadPointFamily, dead_point_roots
 from linkwork.circuits.homotopy.dead_points import DeadPointSystem
-from linkwork.circuits.homotopy.polynomial_system import polish_roots
 
 #: Own rates of a dyad: of two links; of a link and a length on a fixed line (third column: one).
 LINKS = ((0, 0, 0, 1.0, 1.0), (1, 1, 1, 1.0, 1.0))

@@ -9,8 +9,8 @@ import numpy as np
 import numpy.typing as npt
 import pytest
 
+from linkwork.core.numerics.change_point import Fold, FoldFamily, locate_fold
 from linkwork.core.numerics.decomposition import JoinedBlocks
-from linkwork.core.numerics.fold import Fold, FoldFamily, locate_fold
 from linkwork.core.numerics.newton import nearest_miss
 from linkwork.core.table.loop_table import LoopTable
 from tests.numerics.systems import blocks_of, loop_table

@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 
 import linkwork as lw
-from linkwork.circuits.dead_point_form import DeadPointForm, dead_point_form
+from linkwork.circuits.dead_inputs import DeadPointForm, dead_point_form
 from linkwork.circuits.homotopy.dead_point_family import dead_point_roots
-from linkwork.circuits.homotopy.idle_component import RealPoints, keeps_complex_input, real_motion
+from linkwork.circuits.homotopy.monodromy import RealPoints, keeps_complex_input, real_motion
 from linkwork.core.motion.following import Drive
 from linkwork.core.motion.model import leading_input
 

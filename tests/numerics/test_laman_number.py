@@ -9,9 +9,8 @@ import pytest
 
 import linkwork as lw
 from linkwork.circuits.homotopy import counts as module
-from linkwork.circuits.homotopy.bilinear_family import Structure, structure_of
 from linkwork.circuits.homotopy.counts import bound_by_sums, laman_number
-from linkwork.circuits.homotopy.isolated_roots import isolated_roots
+from linkwork.circuits.homotopy.isolated_roots import Structure, isolated_roots, structure_of
 from linkwork.core.equations.compiling import direction_form
 from linkwork.core.numerics.bilinear import Columns, column_ranks, random_closures
 from linkwork.core.table.loop_table import LoopTable

@@ -8,8 +8,17 @@ import numpy as np
 import pytest
 
 from linkwork.core.foundation.arrays import Array, IndexArray
-from linkwork.synthesis.lane_least_squares import Box, LaneFit, Residuals, RowVariables, starts_of
-from linkwork.synthesis.lane_problems import POWERS, LaneProblem, Multipliers, different
+from linkwork.synthesis.lane_least_squares import (
+    POWERS,
+    Box,
+    LaneFit,
+    LaneProblem,
+    Multipliers,
+    Residuals,
+    RowVariables,
+    different,
+    starts_of,
+)
 
 _PLACES = np.array([0.0, 1.0, 5.0])
 

@@ -11,8 +11,7 @@ import numpy.typing as npt
 import pytest
 
 from linkwork.core.foundation.statuses import Status
-from linkwork.core.numerics.newton import NewtonOptions, nearest_miss, newton
-from linkwork.core.numerics.system import SolvedRows
+from linkwork.core.numerics.newton import NewtonOptions, SolvedRows, nearest_miss, newton
 from linkwork.core.table.loop_table import LoopTable
 from tests.numerics.systems import Cubic, four_bar_table, loop_table, watt_table
 from tests.oracles.four_bar import FourBar, random_crank_rockers

@@ -8,13 +8,12 @@ import numpy as np
 import pytest
 
 from linkwork.circuits.homotopy import isolated_roots as roots_module
-from linkwork.circuits.homotopy.bilinear_family import structure_of
 from linkwork.circuits.homotopy.dead_point_family import (
     DeadPointFamily,
     dead_points_of_one_loop,
     roots_of_two_loops,
 )
-from linkwork.circuits.homotopy.isolated_roots import isolated_roots
+from linkwork.circuits.homotopy.isolated_roots import isolated_roots, structure_of
 from linkwork.core.numerics.bilinear import BilinearSystem
 from tests.numerics.bilinear_systems import angles_only, random_triad
 from tests.numerics.test_dead_point_system import four_bar

@@ -8,8 +8,7 @@ import numpy as np
 import pytest
 
 from linkwork.circuits.homotopy import isolated_roots as roots_module
-from linkwork.circuits.homotopy.bilinear_family import Structure, structure_of
-from linkwork.circuits.homotopy.bilinear_homotopy import StartHomotopy
+from linkwork.circuits.homotopy.bilinear_homotopy import StartHomotopy, distinct_solutions
 from linkwork.circuits.homotopy.counts import (
     Products,
     Theorem,
@@ -17,9 +16,8 @@ from linkwork.circuits.homotopy.counts import (
     bound_by_sums,
     laman_number,
 )
-from linkwork.circuits.homotopy.isolated_roots import isolated_roots
+from linkwork.circuits.homotopy.isolated_roots import Structure, isolated_roots, structure_of
 from linkwork.circuits.homotopy.path_tracking import CAREFUL, track
-from linkwork.circuits.homotopy.polynomial_system import distinct_solutions
 from linkwork.core.numerics.bilinear import columns_of, prove_roots, sums_hold
 from tests.numerics.bilinear_systems import angles_only
 from tests.thinned import thinned

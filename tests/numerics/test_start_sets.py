@@ -11,10 +11,9 @@ import pytest
 
 import linkwork as lw
 from linkwork.circuits.homotopy import isolated_roots, parameter_roots as start_sets
-from linkwork.circuits.homotopy.bilinear_family import Structure
 from linkwork.circuits.homotopy.dead_point_family import DeadPointFamily
 from linkwork.circuits.homotopy.dead_points import Topology
-from linkwork.circuits.homotopy.isolated_roots import Solved, random_member
+from linkwork.circuits.homotopy.isolated_roots import Solved, Structure, random_member
 from linkwork.circuits.homotopy.parameter_roots import StartSet, own_sets, read_sets, write_set
 from linkwork.core.numerics.bilinear import Columns, columns_of, random_closures
 from tests.campaigns.circuits import dead_inputs_of

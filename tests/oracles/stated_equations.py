@@ -25,8 +25,7 @@ from linkwork.core.mechanism.loops import Loops, PlainEquations
 from linkwork.core.mechanism.part.gears import Belt, Gear, Rack
 from linkwork.core.mechanism.part.guides import Cylinder, Slider, Slot, guide_named
 from linkwork.core.mechanism.part.rolling import Rolling
-from linkwork.core.mechanism.part.springs import Spring
-from linkwork.core.mechanism.part.weld import Weld
+from linkwork.core.mechanism.part.springs import Spring, Weld
 from linkwork.core.mechanism.varied_numbers import VariedNumber
 
 __all__ = ["DIGITS", "NotStated", "StatedEquations", "stated"]

@@ -19,7 +19,7 @@ from linkwork.core.numerics.block_solver import FEW, BlockSolver
 from linkwork.core.numerics.newton import NewtonOptions, newton
 from linkwork.core.numerics.position_proof import expansions, prove, recorded_places
 from linkwork.core.record.block_record import BlockRecord, Shape, ShapeWriter, numbers_of, record_of
-from linkwork.core.record.python_text import ARRAYS, FLOATS
+from linkwork.core.record.printing import ARRAYS, FLOATS
 from linkwork.core.table.loop_table import LoopTable
 from tests.library_mechanisms import read_example
 from tests.thinned import thinned

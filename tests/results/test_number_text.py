@@ -7,7 +7,7 @@ import math
 import numpy as np
 import pytest
 
-from linkwork.core.results.listing.motion_listing import rounded_down
+from linkwork.core.results.listing import rounded_down
 
 
 @pytest.mark.parametrize(

@@ -10,7 +10,7 @@ from linkwork.core.foundation.errors import InputError
 from linkwork.core.foundation.names import canonical
 from linkwork.core.mechanism.linkage import Linkage
 from linkwork.core.textfile.reader import example_text
-from linkwork.core.textfile.text_edits import TextEdits
+from linkwork.core.textfile.writer import TextEdits
 from linkwork.design.edits.entries import copy_selection, mirror_numbers, rename
 
 TRIED = [

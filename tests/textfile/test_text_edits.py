@@ -9,7 +9,7 @@ from hypothesis import given, settings, strategies as st
 
 import linkwork as lw
 from linkwork.core.mechanism.varied_numbers import VariedNumber, varied_numbers
-from linkwork.core.textfile.text_edits import TextEdits
+from linkwork.core.textfile.writer import TextEdits
 
 TEXT = """\
 # head

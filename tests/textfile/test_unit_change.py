@@ -8,7 +8,7 @@ import pytest
 import linkwork as lw
 from linkwork.core.foundation.errors import InputError
 from linkwork.core.textfile.reader import example_text
-from linkwork.core.textfile.text_edits import TextEdits
+from linkwork.core.textfile.writer import TextEdits
 from linkwork.design.edits.unit_change import change_units
 
 #: Gears, racks, belts, cams of both kinds, loops, formulas, slots, several inputs, speeds.

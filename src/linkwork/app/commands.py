@@ -12,9 +12,9 @@ from typing import TYPE_CHECKING
 
 import click
 
-from linkwork.app.live.bench import Bench
-from linkwork.app.live.mechanism_file import MechanismFile, new_file
+from linkwork.app.live.opened_file import MechanismFile, new_file
 from linkwork.app.live.server import LiveServer
+from linkwork.app.live.session import Bench
 from linkwork.app.pages.offline_page import embed_snippet, qr_png, qr_svg
 from linkwork.app.web.web_app import MARK, pyodide_files, web_folder, web_page
 from linkwork.core.api.making import loads
@@ -45,7 +45,7 @@ from linkwork.core.textfile.writer import write_text
 
 if TYPE_CHECKING:
     from linkwork.synthesis.solvers.result import Synthesis
-    from linkwork.synthesis.suggestion.suggesting import Suggesting
+    from linkwork.synthesis.suggesting import Suggesting
     from linkwork.synthesis.tasks.task import Task
 from functools import partial
 
@@ -98,7 +98,7 @@ def _solve_task(task: Task, *, progress: Callable[[float], None] | None = None) 
 
 
 def _suggesting() -> Suggesting:
-    from linkwork.synthesis.suggestion import suggesting  # the first time designs are suggested
+    from linkwork.synthesis import suggesting  # the first time designs are suggested
 
     return suggesting
 

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 from linkwork.core.foundation.loading import loader
 
 if TYPE_CHECKING:
-    from linkwork.circuits.functions import (
+    from linkwork.circuits.circuit_list import (
         inversions as inversions,
         nearest_assembly as nearest_assembly,
     )

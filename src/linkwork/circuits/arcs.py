@@ -13,14 +13,11 @@ from linkwork.circuits.branches import (
     branches_of,
     trace_with_proof,
 )
-from linkwork.core.foundation.arrays import Array
-from linkwork.core.foundation.rounding import CLOSER_TANGENT, REGULAR_CONDITION
+from linkwork.core.foundation.arrays import CLOSER_TANGENT, REGULAR_CONDITION, Array
 from linkwork.core.foundation.statuses import CircuitEnd, Status
 from linkwork.core.motion.following import Drive
 from linkwork.core.motion.model import FITS, misfit
-from linkwork.core.numerics.change_point import Crossing
-from linkwork.core.numerics.curve_tracing import tangents_apart
-from linkwork.core.numerics.local_parametrization import (
+from linkwork.core.numerics.branch_tracking import (
     Parametrizations,
     apart,
     coincide,
@@ -28,6 +25,8 @@ from linkwork.core.numerics.local_parametrization import (
     near,
     same_position,
 )
+from linkwork.core.numerics.change_point import Crossing
+from linkwork.core.numerics.curve_tracing import tangents_apart
 from linkwork.core.numerics.newton import newton
 
 _IMPROVED = 1e-4  # weighted: how far a crossing's other blocks are moved at most

@@ -7,15 +7,15 @@ from functools import reduce
 
 import numpy as np
 
-from linkwork.circuits.homotopy.bilinear_family import structure_of
+from linkwork.circuits.homotopy.bilinear_homotopy import Roots
 from linkwork.circuits.homotopy.counts import SolutionBound, bound_by_products
 from linkwork.circuits.homotopy.dead_point_family import roots_of_two_loops
-from linkwork.circuits.homotopy.isolated_roots import isolated_roots
-from linkwork.circuits.homotopy.polynomial_system import Roots
-from linkwork.circuits.homotopy.quadratic_roots import quadratic_roots
+from linkwork.circuits.homotopy.isolated_roots import isolated_roots, quadratic_roots, structure_of
 from linkwork.circuits.results import PathCount
 from linkwork.core.equations.compiling import DirectionForm, NoDirectionForm
 from linkwork.core.foundation.arrays import (
+    ALMOST_DOUBLE,
+    ALMOST_REAL,
     Array,
     BoolArray,
     ComplexArray,
@@ -23,7 +23,6 @@ from linkwork.core.foundation.arrays import (
     IndexArray,
     StatusArray,
 )
-from linkwork.core.foundation.rounding import ALMOST_DOUBLE, ALMOST_REAL
 from linkwork.core.foundation.statuses import Completeness, Status
 from linkwork.core.foundation.units import within_half_a_turn
 from linkwork.core.motion.model import FITS, Model, misfit

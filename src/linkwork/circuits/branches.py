@@ -8,29 +8,27 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from linkwork.circuits.crossed_step import cut_at_crossing
+from linkwork.circuits.dead_inputs import cut_at_crossing
 from linkwork.core.equations.compiling import ParametrizedTable
 from linkwork.core.foundation.arrays import Array
 from linkwork.core.foundation.statuses import CircuitEnd, Status
 from linkwork.core.foundation.units import FULL_TURN
 from linkwork.core.numerics.branch_tracking import (
     Node,
+    Parametrization,
+    Parametrizations,
     Track,
     TrackOptions,
+    coincide,
+    fastest_leader,
     interpolate,
     rows_of_nodes,
     rows_on_track,
 )
-from linkwork.core.numerics.curve_proof import ProvenCurve, prove_curve, same_solution
 from linkwork.core.numerics.curve_tracing import Curve, CurveOptions, Leg, sign_change, trace
-from linkwork.core.numerics.local_parametrization import (
-    Parametrization,
-    Parametrizations,
-    coincide,
-    fastest_leader,
-)
+from linkwork.core.numerics.path_proof import ProvenCurve, prove_curve, same_solution
 from linkwork.core.numerics.turning_point import TurningPoint, turning_points
-from linkwork.core.results.limit import LimitKind
+from linkwork.core.results.failure import LimitKind
 
 _CAREFUL = CurveOptions(track=TrackOptions())
 

@@ -11,12 +11,12 @@ from itertools import product
 from pathlib import Path
 from typing import Any
 
-from linkwork.core.foundation.containers import FrozenDict
+from linkwork.core.foundation.arrays import FrozenDict
 from linkwork.core.foundation.errors import MissingPackageError
 from linkwork.core.foundation.names import GROUND
 from linkwork.core.mechanism.linkage import Linkage
 from linkwork.core.mechanism.part.part import Joint, JointKind
-from linkwork.core.mechanism.part.weld import Weld
+from linkwork.core.mechanism.part.springs import Weld
 
 # ----------------------------------------------------------------------
 # The kinematic chain of a linkage: its links and joints, without dimensions.

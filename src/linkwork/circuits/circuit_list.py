@@ -1,14 +1,16 @@
-"""Seeds of circuits: configurations at inputs that every circuit must pass."""
+"""Functions of a mechanism's kinematic chain."""
 
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
+from math import isfinite
 
 import numpy as np
 
 from linkwork import wings
+from linkwork.circuits import inverting
 from linkwork.circuits.arcs import Arc, Explorer, is_regular, positions_at_value
 from linkwork.circuits.assembling import Assemblies, positions_at
 from linkwork.circuits.branches import CurveBranch, weakest_place
@@ -18,27 +20,90 @@ from linkwork.circuits.dead_inputs import (
     dead_point_inputs,
     intervals_between,
 )
-from linkwork.circuits.results import Branch, Circuit, Circuits
-from linkwork.core.foundation.arrays import Array, DisjointSets
-from linkwork.core.foundation.containers import Deferred
-from linkwork.core.foundation.errors import InputError, UnknownNameError, choices
+from linkwork.circuits.failure import remedies
+from linkwork.circuits.homotopy.isolated_roots import SEED
+from linkwork.circuits.results import (
+    Branch,
+    Circuit,
+    Circuits,
+    Configurations,
+    PathCount,
+    solution_counts,
+)
+from linkwork.core.api.mechanism import Mechanism
+from linkwork.core.foundation.arrays import REGULAR_CONDITION, Array, Deferred, DisjointSets
+from linkwork.core.foundation.errors import InputError, NotConvergedError, UnknownNameError, choices
 from linkwork.core.foundation.names import canonical, short_number
-from linkwork.core.foundation.rounding import REGULAR_CONDITION
 from linkwork.core.foundation.statuses import Certification, CircuitEnd, Completeness, Status
 from linkwork.core.foundation.units import FULL_TURN
 from linkwork.core.foundation.values import check_flags
+from linkwork.core.motion.branch_rows import motion_of_rows
 from linkwork.core.motion.following import Drive
 from linkwork.core.motion.limits import change_point_limit, dead_point_limit
-from linkwork.core.motion.model import Model
-from linkwork.core.motion.rows_between import motion_of_rows
-from linkwork.core.motion.solving import Start, first_position
-from linkwork.core.numerics.branch_tracking import TrackOptions
+from linkwork.core.motion.model import Model, without_redundant
+from linkwork.core.motion.positions import (
+    Evidence,
+    found_message,
+    input_rate,
+    name_series,
+    position_of,
+    target_values,
+)
+from linkwork.core.motion.solving import Start, failed_position, first_position, solve
+from linkwork.core.numerics.branch_tracking import TrackOptions, same_position
 from linkwork.core.numerics.change_point import Crossing
-from linkwork.core.numerics.local_parametrization import same_position
-from linkwork.core.numerics.newton import NewtonOptions
-from linkwork.core.numerics.system import SolvedRows
+from linkwork.core.numerics.newton import NewtonOptions, SolvedRows
+from linkwork.core.results.check import Inversion
 from linkwork.core.results.failure import Failure
+from linkwork.core.results.listing import (
+    Column,
+    Row,
+    listed_links,
+    redundant_lines,
+    short,
+    value_cells,
+)
 from linkwork.core.results.motion import Motion
+from linkwork.core.results.position import Certificate, NearestAssembly, Position
+from linkwork.core.results.quantity import Kind
+
+
+def inversions(mechanism: Mechanism) -> tuple[Inversion, ...]:
+    """All inversions of the chain, each with its type.
+
+    Examples
+    --------
+    >>> import linkwork as lw
+    >>> found = lw.circuits.inversions(lw.example("four-bar"))
+    >>> [inversion.type.split(":")[0] for inversion in found][:2]
+    ['crank-rocker (GCRR)', 'double-crank (GCCC)']
+    """
+    return inverting.inversions(mechanism.model)
+
+
+def nearest_assembly(
+    mechanism: Mechanism, at: float | Mapping[str, float] | None = None
+) -> NearestAssembly:
+    """The position nearest to closure, for a mechanism that does not close.
+
+    Parameters
+    ----------
+    at : number or Mapping[str, number], optional
+        Input value(s) in file units; by default those of the guess.
+
+    Examples
+    --------
+    >>> import linkwork as lw
+    >>> short = lw.example("four-bar").with_dimensions({"A B": 50})
+    >>> round(lw.circuits.nearest_assembly(short, at=180).gap, 1)  # mm
+    10.0
+    """
+    return remedies.nearest_assembly(mechanism.model, at)
+
+
+# ----------------------------------------------------------------------
+# Seeds of circuits: configurations at inputs that every circuit must pass.
+
 
 _LOOKED_AT = 24  # input values at which all configurations are listed if dead points may be missing
 
@@ -401,3 +466,252 @@ def branch_start(model: Model, name: str) -> Model:
     return replace(
         model, equations=equations, branch=name if "branch" in name else f"{name} branch 1"
     )
+
+
+# ----------------------------------------------------------------------
+# Circuits as columns and sentences.
+
+
+def branch_columns(found: Circuits, circuit: Circuit, digits: int = 10) -> list[Column]:
+    """The range of every branch of a circuit."""
+    unit = f" [{found.input_unit}]" if found.input_unit else ""
+    branches = circuit.branches
+    names = [branch.name.removeprefix(f"{circuit.name} ") for branch in branches]
+    low, high = ([short(b.input_range[k], digits) for b in branches] for k in range(2))
+    configurations = [branch.configuration or "-" for branch in branches]
+    return [
+        Column(header=circuit.name, cells=names),
+        Column(header=f"from {found.input}{unit}", cells=low, align="point"),
+        Column(header="to", cells=high, align="point"),
+        Column(header="at the guess's input", cells=configurations),
+    ]
+
+
+def circuit_fields(found: Circuits, circuit: Circuit) -> Iterator[tuple[str, str]]:
+    """How a circuit ends, which links turn, its limits."""
+    proof = "proved" if circuit.certified else "not proved"
+    redundant = circuit.motion.redundant
+    if redundant and circuit.certified:
+        proof += f" without {listed_links(redundant)}"
+    yield ("closed" if circuit.closed else "not closed"), f"{circuit.end.explanation}; {proof}"
+    if circuit.closed:
+        yield from _turning(circuit)
+    resting = [
+        branch.name.removeprefix(f"{circuit.name} ")
+        for branch in circuit.branches
+        if branch.end is CircuitEnd.INPUT_CONSTANT
+    ]
+    if resting:
+        yield "input at rest", f"along {', '.join(resting)} {CircuitEnd.INPUT_CONSTANT.explanation}"
+    for limit in (*circuit.dead_points, *circuit.change_points):
+        yield limit.kind.word, limit.told(found.input, found.input_unit)
+    yield from redundant_lines(redundant)
+    dead = circuit.dead_points or circuit.change_points
+    if not dead and isfinite(circuit.smallest_singular_value):  # infinite without unknowns
+        where = f"{found.input} = {circuit.weakest:.3g} {found.input_unit}".rstrip()
+        yield (
+            "closest to a dead point",
+            f"σ_min = {circuit.smallest_singular_value:.3g}, near {where}",
+        )
+
+
+def _turning(circuit: Circuit) -> Iterator[tuple[str, str]]:
+    """Which links turn fully and which rock during one pass of the circuit."""
+    if circuit.turns:
+        times = "once" if circuit.turns == 1 else f"{circuit.turns} times"
+        yield "input", f"turns {times} before the circuit closes"
+    elif circuit.turns == 0:
+        yield "input", "turns back at the dead points"
+    turns = [f"{link} ({n:+d})" if abs(n) > 1 else link for link, n in circuit.turning.items() if n]
+    rocks = [link for link, n in circuit.turning.items() if not n]
+    if turns:
+        yield "turning", ", ".join(turns)
+    if rocks:
+        yield "rocking", ", ".join(rocks)
+
+
+# ----------------------------------------------------------------------
+# Configurations as columns and sentences.
+
+
+def configuration_columns(
+    found: Configurations, kinds: Mapping[str, Kind], decimals: int = 6
+) -> list[Column]:
+    """A row for every configuration; ``kinds`` of the unknowns in order."""
+    columns = [Column(header="name", cells=found.names)]
+    for name, kind in kinds.items():
+        if name not in found.positions[0].unknowns:
+            continue  # a redundant link's length
+        unit = found.positions[0].units.of(kind)
+        rows = [Row(name=name, kind=kind, value=position.unknowns[name]) for position in found]
+        header = f"{name} [{unit}]" if unit else name
+        columns.append(Column(header=header, cells=value_cells(rows, decimals), align="point"))
+    certified = [_certified(p.certificate) for p in found]
+    columns.append(Column(header="certified", cells=certified))
+    return columns
+
+
+def completeness_fields(found: Configurations) -> Iterator[tuple[str, str]]:
+    """Whether the list is complete, and the counts of solutions behind it."""
+    yield "complete", found.message
+    label = "paths"
+    for count in found.paths:
+        yield label, path_sentence(count, several=len(found.paths) > 1)
+        label = ""
+
+
+def path_sentence(count: PathCount, *, several: bool) -> str:
+    """The counts of solutions of one block in words."""
+    block = f"{', '.join(count.unknowns)}: " if several else ""
+    if not count.paths:
+        return f"{block}follow from the others"
+    text = solution_counts(count)
+    text += f", {count.multiple} multiple" if count.multiple else ""
+    text += f", for {count.solved} positions of earlier blocks" if count.solved > 1 else ""
+    others = [
+        f"{number} {end}"
+        for number, end in ((count.at_infinity, "to infinity"), (count.failed, "lost"))
+        if number
+    ]
+    return f"{block}{text}" + (f"; {count.paths} paths: {', '.join(others)}" if others else "")
+
+
+def _certified(certificate: Certificate) -> str:
+    if certificate.certification is Certification.SUBSET_CERTIFIED:
+        return "partly"
+    return "yes" if certificate.certified else "no"
+
+
+# ----------------------------------------------------------------------
+# All configurations at one input value, as positions.
+
+
+_NONE = "there is no configuration at this input: the loops cannot be closed"
+
+
+def configurations(model: Model, at: float | Mapping[str, float] | None = None) -> Configurations:
+    """All configurations at one input value, each with its certificate.
+
+    Blocks of one loop are solved in closed form, larger ones by following the solutions of a
+    random system of the same structure (:mod:`linkwork.circuits.homotopy.isolated_roots`).
+
+    Parameters
+    ----------
+    at : number or Mapping[str, number], optional
+        Input value(s) in file units; the guess's own if left out.
+
+    Raises
+    ------
+    UnknownNameError, InputError
+        For input values that do not fit the mechanism.
+    """
+    target = target_values(model, at)
+    found = positions_at(model, target * model.input_scale)
+    names = (variable.name for variable in model.equations.inputs)
+    return Configurations(
+        mechanism=model.description.name,
+        positions=_positions(model, target, found),
+        completeness=found.completeness,
+        message=found.message,
+        input=dict(zip(names, target.tolist(), strict=True)),
+        input_units=model.input_units,
+        paths=found.paths,
+        seed=SEED,
+    )
+
+
+def _positions(model: Model, target: Array, found: Assemblies) -> tuple[Position, ...]:
+    count, solver = len(found.v), model.compiled.solver
+    if not count:
+        return ()
+    rates, proof = solver.rates(found.v, input_rate(model)), found.proof
+    residual = solver.residual(found.v)
+    inputs = np.repeat(target[None, :], count, axis=0)
+    named = name_series(
+        model, found.v, rates.first, rates.second, inputs, np.ones(count, dtype=bool)
+    )
+    status = Status.CONVERGED
+    positions = []
+    for k in range(count):
+        certificate = Certificate(certification=Certification.POSITION_NOT_PROVED)
+        if proof.holds[k]:
+            certificate = Certificate(
+                certification=without_redundant(
+                    model.equations, Certification.CONFIGURATION_CERTIFIED
+                ),
+                radius=float(proof.radius[k]),
+                unique_within=float(proof.least_uniqueness_radius[k]),
+            )
+        evidence = Evidence(
+            status=status,
+            message=found_message(status, float(rates.condition[k])),
+            residual=float(residual[k]),
+            iterations=int(found.iterations[k]),
+            condition=float(rates.condition[k]),
+            certificate=certificate,
+            configuration=found.names[k],
+        )
+        positions.append(position_of(model, named, k, evidence, found.v[k, : solver.unknowns]))
+    return tuple(positions)
+
+
+def solve_configuration(
+    model: Model, at: float | Mapping[str, float] | None, name: str, *, throw: bool = False
+) -> Position:
+    """The position at one input value in a named configuration, or on a named branch.
+
+    Raises
+    ------
+    UnknownNameError, InputError
+        If there is no configuration of this name at this input, or they cannot be listed.
+    NotConvergedError
+        Only with ``throw``: if there is no configuration at all at this input.
+    """
+    if is_branch_name(name):
+        return solve(branch_start(model, name), at, throw=throw)
+    found = configurations(model, at)
+    if found.completeness is Completeness.NOT_LISTED:
+        raise InputError(f"{model.description.name}: {found.message}")
+    if len(found):
+        return found[name]
+    position = _explain_unassembled(model, target_values(model, at))
+    if throw:
+        raise NotConvergedError(position.message)
+    return position
+
+
+def _explain_unassembled(model: Model, target: Array) -> Position:
+    """The message where there is no configuration: the loop that does not close, if one is known.
+
+    Newton-Raphson is tried from the guess, as for every position; the message is that of its
+    failure.
+    """
+    start = first_position(model, target * model.input_scale, NewtonOptions())
+    if start.failure is not None:
+        return failed_position(model, target, start.status, start.failure, start)
+    failure = Failure(what=_NONE, units=model.units)
+    return failed_position(model, target, Status.CANNOT_CLOSE, failure, start)
+
+
+def start_in_configuration(model: Model, name: str) -> Model:
+    """The model with a named configuration, at the guess's own input value, as its guess.
+
+    A name such as ``circuit 1 branch 2`` takes a position on that branch instead.
+
+    Raises
+    ------
+    UnknownNameError, InputError
+        If there is no configuration of this name, or they cannot be listed.
+    """
+    if is_branch_name(name):
+        return branch_start(model, name)
+    found = positions_at(model, model.start_inputs)
+    if found.completeness is Completeness.NOT_LISTED:
+        raise InputError(f"{model.description.name}: {found.message}")
+    if name not in found.names:
+        raise UnknownNameError(
+            f'there is no configuration "{name}" of {model.description.name} at its guess\'s '
+            f"input {choices('configurations', found.names, name)}"
+        )
+    start = found.v[found.names.index(name)]
+    return replace(model, equations=replace(model.equations, start=start), branch=name)

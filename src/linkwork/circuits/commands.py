@@ -5,7 +5,7 @@ from __future__ import annotations
 import click
 
 from linkwork import wings
-from linkwork.circuits.listing import (
+from linkwork.circuits.circuit_list import (
     branch_columns,
     circuit_fields,
     completeness_fields,
@@ -37,12 +37,12 @@ from linkwork.core.commands.terminal import (
     title_lines,
     wrapped,
 )
+from linkwork.core.drawing.matplotlib_writer import check_picture, write
 from linkwork.core.drawing.mechanism_scene import configuration_sheet
-from linkwork.core.drawing.picture_file import check_picture, write
 from linkwork.core.foundation.errors import InputError
 from linkwork.core.foundation.names import canonical
 from linkwork.core.motion.extremes import check_quantities
-from linkwork.core.results.listing.motion_listing import inputs_text, short
+from linkwork.core.results.listing import inputs_text, short
 from linkwork.core.results.quantity import Kind
 
 # ----------------------------------------------------------------------

@@ -1,7 +1,8 @@
-"""Trial input values: one in each interval between neighbouring dead points.
+"""A step of a curve that leads across a change point, and the curve up to that point.
 
-Between them the number of configurations is constant, so each configuration at one value represents
-a piece of a circuit over the whole interval.
+Steps keep the sign of det J, but where two crossings coincide the sign is the same on both sides.
+Such a step cannot be proved. The place in it that is nearest to a singular one is next to the
+change point, if there is one.
 """
 
 from __future__ import annotations
@@ -13,26 +14,309 @@ from itertools import pairwise
 
 import numpy as np
 
-from linkwork.circuits.dead_point_form import DeadPointForm, dead_point_form
+from linkwork.circuits.homotopy.bilinear_homotopy import nearest_solution
 from linkwork.circuits.homotopy.dead_point_family import dead_point_roots
-from linkwork.circuits.homotopy.idle_component import keeps_complex_input, real_motion
-from linkwork.circuits.homotopy.polynomial_system import nearest_solution
+from linkwork.circuits.homotopy.dead_points import DeadPointSystem, Slot
+from linkwork.circuits.homotopy.monodromy import keeps_complex_input, real_motion
 from linkwork.circuits.results import PathCount
-from linkwork.core.equations.compiling import NoDirectionForm, ParametrizedTable
-from linkwork.core.foundation.arrays import Array, BoolArray, ComplexArray
-from linkwork.core.foundation.rounding import ALMOST_DOUBLE, ALMOST_REAL
-from linkwork.core.foundation.statuses import Completeness
+from linkwork.core.equations.compiling import (
+    DirectionForm,
+    NoDirectionForm,
+    ParametrizedTable,
+    check_independent,
+    direction_form,
+)
+from linkwork.core.foundation.arrays import (
+    ALMOST_DOUBLE,
+    ALMOST_REAL,
+    Array,
+    BoolArray,
+    ComplexArray,
+    IndexArray,
+)
+from linkwork.core.foundation.lanes import phase
+from linkwork.core.foundation.statuses import CircuitEnd, Completeness
 from linkwork.core.foundation.units import FULL_TURN
 from linkwork.core.motion.model import Model
-from linkwork.core.numerics.branch_tracking import InputPath
+from linkwork.core.numerics.block_solver import BlockSolver
+from linkwork.core.numerics.branch_tracking import (
+    BOLD,
+    InputPath,
+    Node,
+    Parametrization,
+    Parametrizations,
+    follow,
+)
 from linkwork.core.numerics.change_point import crossing_near
+from linkwork.core.numerics.curve_tracing import Curve, Leg, crossing_beyond, node_between
+from linkwork.core.numerics.decomposition import closure_of
+from linkwork.core.table.loop_table import LoopTable, TableSplitter
+
+_NARROWINGS = 24  # of a step at most, each
+_INSIDE_STEP = (0.4, 0.6)  # to before the second or behind the first of these shares
+_SHORT = 5e-4  # of the leader's natural size: from so near change points are located
+
+
+def cut_at_crossing(leads: Parametrizations, curve: Curve, number: int, after: int) -> Curve | None:
+    """The curve up to a change point in the step behind the node ``after`` of a leg.
+
+    Returns
+    -------
+    Curve or None
+        ``None`` if no change point is found there. It may need another leader than the leg's: the
+        curve then has one more leg.
+    """
+    leg = curve.legs[number]
+    if not 0 <= after < len(leg.nodes) - 1:
+        return None
+    low = _before_singular(leg.led, *leg.nodes[after : after + 2])
+    if low is None:
+        return None
+    way = replace(leg, nodes=(*leg.nodes[: after + 1], low))
+    sign = math.copysign(1.0, leg.nodes[-1].t - leg.nodes[0].t)
+    v, heading = leg.led.whole(low.v), sign * leg.led.whole(low.first)
+    speed = np.abs(heading) / leads.scale
+    for lead in np.argsort(-speed, kind="stable").tolist():
+        led = leads.with_parameter(lead)
+        if led is None or not speed[lead] > 0.0:
+            continue
+        here, side = led.node(v), math.copysign(1.0, heading[lead])
+        found = crossing_beyond(leads, led, here, side)
+        if found is None:
+            continue
+        nodes, end = follow(led.solver, led.path, here, 0.5 * (here.t + float(found.v[lead])), BOLD)
+        if end is not None or not nodes:
+            continue
+        return Curve(
+            legs=(*curve.legs[:number], way, Leg(led=led, nodes=(here, *nodes))),
+            end=CircuitEnd.CHANGE_POINT,
+            passes=tuple(each for each in curve.passes if each[0] < number),
+            crossing=found,
+        )
+    return None
+
+
+def _before_singular(led: Parametrization, low: Node, high: Node) -> Node | None:
+    """The node of a step just before its place that is nearest to a singular one."""
+    for _ in range(_NARROWINGS):
+        if abs(high.t - low.t) <= _SHORT * led.path.size:
+            break
+        first, second = (node_between(led, low, high, share) for share in _INSIDE_STEP)
+        if first is None or second is None:
+            return None
+        if first.nearness < second.nearness:
+            low = first
+        else:
+            high = second
+    return low
+
+
+# ----------------------------------------------------------------------
+# Dead points of blocks as polynomial systems with the input as an unknown.
+
+
+_DEPENDENT = 1e-9  # smallest singular value of the lengths' columns, relative to the largest
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class DeadPointForm:
+    """The dead points of one block as a system of polynomials.
+
+    Parameters
+    ----------
+    form : DirectionForm
+        Form of the block and all blocks it depends on; the leading input is the last unknown.
+    system : DeadPointSystem
+    variables : (n,) int
+        Indices of the form's unknowns among the variables of the mechanism.
+    poles : tuple of float, optional
+        Input angles φ at which lengths of the block run to infinity while those it depends on stay
+        finite; ``None`` if unknown.
+    """
+
+    form: DirectionForm
+    system: DeadPointSystem
+    variables: IndexArray
+    known: Array
+    poles: tuple[float, ...] | None
+
+    def positions(self, x: ComplexArray, near: Array) -> Array:
+        """The unknowns (R, n) at real solutions x; angles within half a turn of ``near`` (N,)."""
+        known = np.repeat(self.known[None, :], len(x), axis=0)
+        return self.form.unknowns(x[:, : 2 * self.system.size], known, near[self.variables])
+
+    def lead(self, x: ComplexArray) -> tuple[ComplexArray, ComplexArray]:
+        """The leading input at a solution x (n,), in terms of U and of V, and both gradients.
+
+        Returns
+        -------
+        value, slope : (2,), (2, n)
+            e^{iθ} up to a constant factor, or a length; conjugates of each other if real.
+        """
+        form, m = self.form, self.system.size
+        number = form.table.unknowns - 1
+        value, slope = np.zeros(2, dtype=complex), np.zeros((2, len(x)), dtype=complex)
+        for side, begin in enumerate((0, m)):
+            if number in form.turning:
+                weights = form.angles[form.turning.tolist().index(number)]
+                used = begin + np.flatnonzero(weights)
+                power = weights[weights != 0.0]
+                value[side] = np.prod(x[used] ** power)
+                slope[side, used] = value[side] * power / x[used]
+                continue
+            k = form.sliding.tolist().index(number)
+            here, along = begin + form.directions + k, form.along[k]
+            way = complex(x[begin + along]) if along >= 0 else 1.0
+            value[side] = x[here] / way
+            slope[side, here] = 1.0 / way
+            if along >= 0:
+                slope[side, begin + along] = -value[side] / way
+        return value, slope
+
+
+def dead_point_form(
+    leads: ParametrizedTable, solver: BlockSolver, path: InputPath, number: int
+) -> DeadPointForm | None:
+    """The form of a block; ``None`` if the block cannot lock or the input does not move it.
+
+    Raises
+    ------
+    NoDirectionForm
+        If this form does not exist.
+    """
+    members = closure_of(solver, number)
+    blocks = [solver.blocks[k] for k in members]
+    own = blocks[-1]
+    table = own.system
+    used = {int(k) for block in blocks for k in block.variables[len(block.unknowns) :]}
+    n = solver.unknowns
+    # without a varying input the block is constant
+    inputs = [k - n for k in sorted(used) if k >= n and path.rate[k - n]]
+    if not isinstance(table, LoopTable) or not table.loops.rows or not inputs:
+        return None
+    lead = leads.parameter
+    others = [n + j for j in inputs if n + j != lead]
+    # linear rows for the other inputs follow those of the table
+    whole = leads.table
+    waiting = [j for j in range(len(path.rate)) if n + j != lead]
+    lines = len(whole.pattern()) - len(whole.functions) - len(waiting)
+    equations = [e for block in blocks for e in block.equations]
+    equations += [lines + waiting.index(k - n) for k in others]
+    unknowns = [*(int(u) for block in blocks for u in block.unknowns), *others, lead]
+    part, known = TableSplitter(whole).part(equations, unknowns)
+    form = direction_form(part, free=1)
+    at = path.at(0.0)
+    values = np.array([at[k - n] for k in known])
+    left, _ = form.closures(values[None, :], np.zeros((1, len(known))))
+    check_independent(left[0])
+    place = {u: k for k, u in enumerate(unknowns)}
+    mine = [place[int(u)] for u in own.unknowns]
+    return DeadPointForm(
+        form=form,
+        system=DeadPointSystem(
+            left=left[0],
+            right=left[0].conj(),
+            rows=form.rows,
+            own=table.loops.rows,
+            slots=_slots(form, mine, table.loops.rows),
+        ),
+        variables=np.array(unknowns, dtype=np.intp),
+        known=values,
+        poles=_poles(form, left[0][-table.loops.rows :], mine),
+    )
+
+
+def _slots(form: DirectionForm, own: list[int], loops: int) -> tuple[Slot, ...]:
+    """The terms of the rates of the block's unknowns, with all others constant."""
+    count, size = form.directions, form.rows.shape[1]
+    still = [k for k, j in enumerate(form.turning.tolist()) if j not in own]
+    turns = _null_space(form.angles[still])  # of the directions
+    lengths = [k for k, j in enumerate(form.sliding.tolist()) if j in own]
+    if turns.shape[1] + len(lengths) != 2 * loops:
+        raise NoDirectionForm("do not have two unknown directions or lengths for every loop")
+    slots: list[Slot] = []
+    for number, column in enumerate(turns.T.tolist()):
+        slots += [(d, d, number, w, w) for d, w in enumerate(column) if w]
+        for k, a in enumerate(form.along):
+            if a >= 0 and column[a]:
+                slots.append((count + k, count + k, number, column[a], column[a]))
+    for number, k in enumerate(lengths, turns.shape[1]):
+        a = form.along[k]
+        slots.append((count + k, a if a >= 0 else size, number, 1.0, -1.0))
+    return tuple(slots)
+
+
+def _null_space(rows: Array) -> Array:
+    """A basis (D, K) of the null space of an integer matrix (R, D), by elimination."""
+    rows = rows.copy()
+    pivots: list[int] = []
+    for column in range(rows.shape[1]):
+        begin = len(pivots)
+        if begin == len(rows):
+            break
+        best = begin + int(np.argmax(np.abs(rows[begin:, column])))
+        if abs(rows[best, column]) < 1e-9:
+            continue
+        rows[[begin, best]] = rows[[best, begin]]
+        rows[begin] /= rows[begin, column]
+        for k in range(len(rows)):
+            if k != begin:
+                rows[k] -= rows[k, column] * rows[begin]
+        pivots.append(column)
+    free = [k for k in range(rows.shape[1]) if k not in pivots]
+    basis = np.zeros((rows.shape[1], len(free)))
+    for number, k in enumerate(free):
+        basis[k, number] = 1.0
+        for row, pivot in enumerate(pivots):
+            # 0.0 - x, as -x would leave -0.0
+            basis[pivot, number] = 0.0 - rows[row, k]
+    return basis
+
+
+def _poles(form: DirectionForm, closures: ComplexArray, own: list[int]) -> tuple[float, ...] | None:
+    """Input angles at which lengths of the block's closures (l, M + 1) can run to infinity."""
+    lengths = [k for k, j in enumerate(form.sliding.tolist()) if j in own]
+    along = [form.along[k] for k in lengths]
+    columns = closures[:, [form.directions + k for k in lengths]]
+    # much larger lengths cannot close the loop, so they stay finite
+    if not lengths or _closed_by_nothing(columns, along):
+        return ()
+    if len(columns) == 1 and len(lengths) == 2 and form.directions == 1 and sum(along) == -1:
+        # one along the input, one along a fixed line: parallel twice per turn
+        turning = along.index(0)
+        ratio = complex(columns[0, 1 - turning] / columns[0, turning])
+        angle = phase(ratio)
+        shift = float((form.angles @ np.array([angle]))[-1] + form.shift[-1, -1])
+        return (shift, shift + math.pi)
+    return None
+
+
+def _closed_by_nothing(columns: ComplexArray, along: list[int]) -> bool:
+    """Whether lengths much larger than all others violate a closure for all directions."""
+    real = []
+    for column, a in zip(columns.T, along, strict=True):
+        real.append(np.concatenate([column.real, column.imag]))
+        if a >= 0:
+            real.append(np.concatenate([-column.imag, column.real]))
+    if len(real) > len(real[0]):
+        return False
+    sizes = np.linalg.svd(np.array(real), compute_uv=False)
+    return bool(sizes[-1] > _DEPENDENT * sizes[0])
+
+
+# ----------------------------------------------------------------------
+# Trial input values: one in each interval between neighbouring dead points.
+#
+# Between them the number of configurations is constant, so each configuration at one value
+# represents a piece of a circuit over the whole interval.
+
 
 #: Input values of one interval, in the order in which they are tried.
 Interval = tuple[float, ...]
 
 _PLACES = (0.5, 0.45, 0.62, 0.31)  # of an interval; the middle is the furthest from both ends
 _OUTSIDE = (0.5, 0.37, 0.83)  # natural sizes of the input, beyond the outermost values
-_INSIDE = 0.2  # of an interval: how far from its ends its sample value lies
+_INSIDE_RANGE = 0.2  # of an interval: how far from its ends its sample value lies
 _NARROW = 1e-12  # relative width: nothing fits between the ends
 
 
@@ -58,9 +342,9 @@ def intervals_between(
     found = [_inside(a, b) for a, b in _open(cuts, guess)]
     below = tuple(float(cuts[0] - place * scale) for place in _OUTSIDE)
     above = tuple(float(cuts[-1] + place * scale) for place in _OUTSIDE)
-    if guess is None or guess > cuts[0] - _INSIDE * scale:
+    if guess is None or guess > cuts[0] - _INSIDE_RANGE * scale:
         found.insert(0, below)
-    if guess is None or guess < cuts[-1] + _INSIDE * scale:
+    if guess is None or guess < cuts[-1] + _INSIDE_RANGE * scale:
         found.append(above)
     return found
 
@@ -71,7 +355,7 @@ def _open(ends: Sequence[float] | Array, guess: float | None) -> Iterable[tuple[
         if width <= _NARROW * max(1.0, abs(a), abs(b)):
             continue
         # a guess too near to an end may see a double configuration there
-        inside = _INSIDE * width
+        inside = _INSIDE_RANGE * width
         if guess is None or not a + inside <= guess <= b - inside:
             yield float(a), float(b)
 

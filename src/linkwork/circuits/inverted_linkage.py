@@ -8,7 +8,7 @@ from typing import Any
 
 from linkwork.core.expression.grammar import parse
 from linkwork.core.expression.tree import names_in
-from linkwork.core.foundation.containers import FrozenDict
+from linkwork.core.foundation.arrays import FrozenDict
 from linkwork.core.foundation.errors import InputError, UnknownNameError, choices
 from linkwork.core.foundation.lanes import phase
 from linkwork.core.foundation.names import GROUND, as_name, canonical, free_name

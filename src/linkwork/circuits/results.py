@@ -9,12 +9,10 @@ from typing import Any
 import numpy as np
 
 from linkwork import wings
-from linkwork.core.foundation.arrays import Array
-from linkwork.core.foundation.containers import Deferred, FrozenDict, NamedSequence
+from linkwork.core.foundation.arrays import Array, Deferred, FrozenDict, NamedSequence
 from linkwork.core.foundation.errors import UnknownNameError, choices, internal
 from linkwork.core.foundation.statuses import CircuitEnd, Completeness
-from linkwork.core.results.failure import Failure
-from linkwork.core.results.limit import Limit
+from linkwork.core.results.failure import Failure, Limit
 from linkwork.core.results.motion import Motion
 from linkwork.core.results.position import Position
 from linkwork.core.results.tables import Summary, driven_text

@@ -9,7 +9,6 @@ import numpy as np
 
 from linkwork.contacts.curves import CurvedSlot, PitchCurve
 from linkwork.core.drawing.links import contour_line, contour_mark, convex_outline, stems, tones
-from linkwork.core.drawing.parts import figure_symbols
 from linkwork.core.drawing.pose import Pose
 from linkwork.core.drawing.scene import (
     Hatch,
@@ -21,6 +20,7 @@ from linkwork.core.drawing.scene import (
     drawn_line,
     xy,
 )
+from linkwork.core.drawing.wheels import figure_symbols
 from linkwork.core.foundation.arrays import ComplexArray
 from linkwork.core.foundation.names import GROUND
 from linkwork.core.mechanism.bodies import CamOutline, Contour, Follower

@@ -15,15 +15,14 @@ from linkwork.contacts.curves import Curve, NoncircularGear, coordinates
 from linkwork.contacts.profiles import Outline, Undercut, follower_of, program_of, spline
 from linkwork.core.equations.frames import PartRows, Place
 from linkwork.core.equations.model import LawEquation, LoopEquation, MeasuredInPart, Term
-from linkwork.core.equations.parts import write_rows
+from linkwork.core.equations.writing import write_rows
 from linkwork.core.expression.derivatives import Jet, evaluate
 from linkwork.core.expression.grammar import parse
 from linkwork.core.expression.tree import Name, names_in
-from linkwork.core.foundation.arrays import Array
+from linkwork.core.foundation.arrays import EPSILON, Array
 from linkwork.core.foundation.lanes import leader_value, phase, phase as phase_of, uniform_value
 from linkwork.core.foundation.names import canonical
 from linkwork.core.foundation.precise import PI, joined, sin_cos
-from linkwork.core.foundation.rounding import EPSILON
 from linkwork.core.mechanism.bodies import Bodies
 from linkwork.core.mechanism.description import Key
 from linkwork.core.mechanism.part.guides import Slider, guide_named

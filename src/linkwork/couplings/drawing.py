@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from linkwork.core.drawing.parts import figure_symbols
 from linkwork.core.drawing.pose import Pose
 from linkwork.core.drawing.scene import Measures, Polyline, Primitive, Role, xy
+from linkwork.core.drawing.wheels import figure_symbols
 from linkwork.couplings.coupling import CouplingLine
 
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from linkwork.core.equations.frames import PartRows
-from linkwork.core.equations.parts import write_rows
+from linkwork.core.equations.writing import write_rows
 from linkwork.core.mechanism.description import Key
 from linkwork.couplings.coupling import LinearCoupling
 

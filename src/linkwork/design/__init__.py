@@ -7,8 +7,9 @@ from typing import TYPE_CHECKING
 from linkwork.core.foundation.loading import loader
 
 if TYPE_CHECKING:
-    from linkwork.design.balancing import balanced as balanced, counterweights as counterweights
     from linkwork.design.machine import (
+        balanced as balanced,
+        counterweights as counterweights,
         flywheel as flywheel,
         harmonics as harmonics,
         inflection_circle as inflection_circle,

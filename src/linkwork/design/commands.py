@@ -41,7 +41,7 @@ from linkwork.core.commands.terminal import (
 )
 from linkwork.core.foundation.arrays import Array
 from linkwork.core.foundation.errors import InputError
-from linkwork.core.results.listing.motion_listing import Column, short, significant
+from linkwork.core.results.listing import Column, short, significant
 from linkwork.core.results.motion import Motion
 from linkwork.design.sensitivities import is_of_motion
 from linkwork.design.tolerance_results import (

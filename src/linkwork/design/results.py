@@ -8,8 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from linkwork import wings
-from linkwork.core.foundation.arrays import Array
-from linkwork.core.foundation.containers import read_only
+from linkwork.core.foundation.arrays import Array, read_only
 from linkwork.core.foundation.errors import internal
 from linkwork.core.results.tables import Summary
 

@@ -13,7 +13,7 @@ from linkwork.core.foundation.arrays import AnyArray, Array
 from linkwork.core.foundation.errors import InputError, UnknownNameError
 from linkwork.core.mechanism.varied_numbers import VariedNumber
 from linkwork.core.motion.model import Model, leading_input
-from linkwork.core.results.limit import LimitKind
+from linkwork.core.results.failure import LimitKind
 from linkwork.core.results.motion import Motion
 from linkwork.core.results.position import Position
 from linkwork.core.results.quantities.definition import Asked, AskedOfMotion, Group, RowSlopes

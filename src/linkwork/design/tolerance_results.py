@@ -8,12 +8,11 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from linkwork.core.foundation.arrays import AnyArray, Array
-from linkwork.core.foundation.containers import FrozenDict, read_only
+from linkwork.core.foundation.arrays import AnyArray, Array, FrozenDict, read_only
 from linkwork.core.foundation.errors import UnknownNameError, choices
 from linkwork.core.foundation.names import find_spelling
 from linkwork.core.foundation.statuses import CodedEnum
-from linkwork.core.results.listing.motion_listing import Column, fixed, short, significant
+from linkwork.core.results.listing import Column, fixed, short, significant
 from linkwork.core.results.tables import Summary, Table, driven_text
 from linkwork.design.results import Summarized
 

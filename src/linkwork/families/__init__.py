@@ -21,10 +21,11 @@ if TYPE_CHECKING:
     from linkwork.families.study.plan import read_plan as read_plan
     from linkwork.families.study.running import run_study as run_study
     from linkwork.families.study.store import (
+        Summary as Summary,
         Verification as Verification,
+        summary_of as summary_of,
         verify_store as verify_store,
     )
     from linkwork.families.study.study import Study as Study
-    from linkwork.families.study.summary import Summary as Summary, summary_of as summary_of
 else:
     __getattr__ = loader(__name__)

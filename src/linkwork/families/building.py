@@ -10,12 +10,17 @@ from weakref import WeakKeyDictionary
 import numpy as np
 
 from linkwork.core.equations.compiling import Compiled, compile_equations
-from linkwork.core.equations.from_linkage import write_loops
-from linkwork.core.equations.from_loops import read_loops, read_plain_equations
+from linkwork.core.equations.from_description import read_loops, read_plain_equations, write_loops
 from linkwork.core.equations.input_motion import driven_by_time
 from linkwork.core.equations.model import LawEquation, LoopEquations, Term
-from linkwork.core.foundation.arrays import AnyArray, Array, BoolArray, ComplexArray, IndexArray
-from linkwork.core.foundation.containers import FrozenDict
+from linkwork.core.foundation.arrays import (
+    AnyArray,
+    Array,
+    BoolArray,
+    ComplexArray,
+    FrozenDict,
+    IndexArray,
+)
 from linkwork.core.foundation.errors import InputError, LinkworkError
 from linkwork.core.foundation.lanes import LaneArithmetic, NotElementwise, is_batched
 from linkwork.core.foundation.values import as_told, check_class

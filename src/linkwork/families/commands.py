@@ -28,9 +28,9 @@ from linkwork.core.commands.terminal import (
     wrapped,
 )
 from linkwork.core.foundation.errors import InputError
-from linkwork.core.results.listing.motion_listing import Column, lengths, significant
+from linkwork.core.results.listing import Column, lengths, significant
 from linkwork.families import study as studies
-from linkwork.families.study.packages import check_packages
+from linkwork.families.study.store import check_packages
 
 # ----------------------------------------------------------------------
 # A study as a page of text: counts of designs, filters, ranges and histograms.

@@ -1,4 +1,4 @@
-"""Sweeps of all designs of a family: their rows, the limits of their branches."""
+"""Mechanisms as input of compiled kernels."""
 
 from __future__ import annotations
 
@@ -12,6 +12,7 @@ import numpy as np
 
 from linkwork import wings
 from linkwork.core.foundation.arrays import (
+    UNIT_ROUNDOFF,
     AnyArray,
     Array,
     BoolArray,
@@ -19,25 +20,50 @@ from linkwork.core.foundation.arrays import (
     StatusArray,
     TurnArray,
     allocate_aligned,
+    read_only,
 )
-from linkwork.core.foundation.containers import read_only
 from linkwork.core.foundation.errors import LinkworkError, internal
-from linkwork.core.foundation.rounding import UNIT_ROUNDOFF
 from linkwork.core.foundation.statuses import Certification, Status
 from linkwork.core.foundation.units import FULL_TURN
 from linkwork.core.mechanism.inputs import Input
+from linkwork.core.motion.branch_rows import RowsBetween, motion_of_rows
 from linkwork.core.motion.following import Drive
 from linkwork.core.motion.limits import BranchEnd
 from linkwork.core.motion.model import Model, leading_input
-from linkwork.core.motion.rows_between import RowsBetween, motion_of_rows
 from linkwork.core.motion.sweeping import sweep, sweep_rows
-from linkwork.core.numerics.system import SolvedRows
-from linkwork.core.results.limit import LimitKind
+from linkwork.core.numerics.newton import SolvedRows
+from linkwork.core.record.closure import BlockPart
+from linkwork.core.results.failure import LimitKind
 from linkwork.core.results.motion import Motion
 from linkwork.families.building import Designs, stay_open
-from linkwork.families.compiled.code_cache import has_compiler
-from linkwork.families.compiled.execution import Execution
-from linkwork.families.topologies import are_served
+from linkwork.families.compiled.compiling import Execution, has_compiler
+
+# ----------------------------------------------------------------------
+# The equations of a mechanism as input of compiled kernels.
+
+
+def are_served(model: Model) -> bool:
+    """Whether kernels can solve a mechanism: loops and lines only, no redundant links."""
+    equations, compiled = model.equations, model.compiled
+    plain = not compiled.table.functions and not equations.redundant
+    return bool(plain and len(equations.inputs) and compiled.solver.unknowns)
+
+
+def block_parts(model: Model) -> list[BlockPart]:
+    """The blocks of a mechanism in the order in which they are solved."""
+    return [
+        BlockPart(equations=block.equations, unknowns=tuple(block.unknowns.tolist()))
+        for block in model.compiled.solver.blocks
+    ]
+
+
+def lines_of_lengths(model: Model) -> set[int]:
+    """The linear rows that are equations of lengths."""
+    return {k for k, line in enumerate(model.equations.linear) if line.kind == "length"}
+
+
+# ----------------------------------------------------------------------
+# Sweeps of all designs of a family: their rows, the limits of their branches.
 
 
 def loop_coefficients(designs: Designs) -> dict[str, Array]:

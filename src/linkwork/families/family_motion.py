@@ -19,7 +19,7 @@ from linkwork.core.motion.model import leading_input
 from linkwork.core.results.quantities.definition import Asked, AskedOfMotion, Group
 from linkwork.core.results.quantities.registry import Quantities
 from linkwork.core.results.quantity import Rate
-from linkwork.core.results.series import Series
+from linkwork.core.results.tables import Series
 from linkwork.families.building import Designs
 from linkwork.families.design_sweep import DesignRows, FamilyLimits, message_single
 from linkwork.families.located import closer_rows, located_number

@@ -25,16 +25,16 @@ from linkwork.core.record.recorder import (
     lower_program,
     reserve,
 )
+from linkwork.families.design_sweep import block_parts, lines_of_lengths
 from linkwork.families.march.march_programs import (
     OPTIONS,
+    PlaceWriter,
     Steps,
     ThreadState,
     march_programs,
     printed_sections,
 )
-from linkwork.families.march.rate_programs import PlaceWriter
 from linkwork.families.recorded_design import Part, RecordedDesign, RecordedNumber, Recording
-from linkwork.families.topologies import block_parts, lines_of_lengths
 
 _UNKNOWN = np.array([np.nan])
 

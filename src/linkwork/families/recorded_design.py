@@ -15,7 +15,7 @@ from typing import Any, cast
 import numpy as np
 
 from linkwork.core.expression.values import least, most
-from linkwork.core.foundation.arrays import AnyArray, Array, BoolArray
+from linkwork.core.foundation.arrays import UNIT_ROUNDOFF, AnyArray, Array, BoolArray
 from linkwork.core.foundation.errors import InputError, LinkworkError
 from linkwork.core.foundation.lanes import (
     Consensus,
@@ -25,7 +25,6 @@ from linkwork.core.foundation.lanes import (
     remainders,
     with_parts,
 )
-from linkwork.core.foundation.rounding import UNIT_ROUNDOFF
 from linkwork.core.mechanism.description import Description
 from linkwork.core.mechanism.varied_numbers import VariedNumber, number_named, with_numbers
 from linkwork.core.motion.model import Model, model_of

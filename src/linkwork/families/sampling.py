@@ -13,8 +13,7 @@ from typing import Any
 
 import numpy as np
 
-from linkwork.core.foundation.arrays import AnyArray, Array
-from linkwork.core.foundation.containers import read_only
+from linkwork.core.foundation.arrays import AnyArray, Array, read_only
 from linkwork.core.foundation.errors import InputError, UnknownNameError, choices
 from linkwork.core.foundation.names import as_names
 from linkwork.core.foundation.values import as_told, whole_number

@@ -13,7 +13,7 @@ if TYPE_CHECKING:
         Equilibrium as Equilibrium,
         ForceStatus as ForceStatus,
         Reactions as Reactions,
+        Stall as Stall,
     )
-    from linkwork.forces.stall import Stall as Stall
 else:
     __getattr__ = loader(__name__)

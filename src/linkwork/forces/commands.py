@@ -41,11 +41,11 @@ from linkwork.core.commands.terminal import (
     title_lines,
 )
 from linkwork.core.drawing.annotations import SceneOptions
-from linkwork.core.drawing.picture_file import check_picture, write
+from linkwork.core.drawing.matplotlib_writer import check_picture, write
 from linkwork.core.foundation.errors import InputError
 from linkwork.core.foundation.lanes import phase
 from linkwork.core.mechanism.dimensions import Number
-from linkwork.core.results.listing.motion_listing import (
+from linkwork.core.results.listing import (
     Column,
     fixed,
     inputs_text,
@@ -56,14 +56,16 @@ from linkwork.core.results.listing.motion_listing import (
 from linkwork.core.results.motion import Motion
 from linkwork.core.results.tables import Table
 from linkwork.forces.functions import equilibria, stalls
-from linkwork.forces.listing import (
+from linkwork.forces.results import (
+    Equilibrium,
+    ForceStatus,
+    Reactions,
+    Stall,
     finite_forces,
     force_fields,
     force_status_fields,
     undefined_fields,
 )
-from linkwork.forces.results import Equilibrium, ForceStatus, Reactions
-from linkwork.forces.stall import Stall
 
 # ----------------------------------------------------------------------
 # Forces as a page of text: efforts, reactions, totals, and how far the two ways agree.

@@ -7,8 +7,7 @@ from collections.abc import Mapping
 from linkwork import wings
 from linkwork.core.api.mechanism import Mechanism
 from linkwork.core.results.motion import Motion
-from linkwork.forces.results import Equilibrium
-from linkwork.forces.stall import Stall
+from linkwork.forces.results import Equilibrium, Stall
 
 
 def stalls(

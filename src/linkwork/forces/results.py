@@ -3,17 +3,19 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections import Counter
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
+from itertools import islice
 
 import numpy as np
 
 from linkwork.core.drawing.annotations import Force
-from linkwork.core.foundation.arrays import AnyArray, Array, BoolArray
-from linkwork.core.foundation.containers import FrozenDict, read_only
+from linkwork.core.foundation.arrays import AnyArray, Array, BoolArray, FrozenDict, read_only
 from linkwork.core.foundation.errors import UnknownNameError, internal
 from linkwork.core.foundation.names import find_spelling
 from linkwork.core.foundation.statuses import CodedEnum
+from linkwork.core.results.position import Position
 from linkwork.core.results.quantities.registry import nearest
 from linkwork.core.results.quantity import Kind
 from linkwork.core.results.tables import Summary, Table
@@ -248,3 +250,106 @@ def summary_of(reactions: Reactions) -> Summary:
         rows.append((name, f"{'' if value.ndim == 0 else 'at most '}{most:.6g} {unit}".rstrip()))
     head = f"Forces of {reactions.mechanism}"
     return Summary(head, tuple(rows))
+
+
+# ----------------------------------------------------------------------
+# Where friction stops a mechanism.
+
+
+@dataclass(frozen=True, kw_only=True)
+class Stall:
+    """An input value between motion and self-locking.
+
+    Parameters
+    ----------
+    input : str
+        The name of the input.
+    value : float
+        The last value found at which an effort moves the mechanism [file units].
+    unit : str
+    bracket : (float, float)
+        A value at which it moves and one at which it locks, both as near as can be found.
+    proved : bool
+        Whether the equilibrium at one, and that there is none at the other, are proved.
+    position : Position
+        The mechanism at ``value``: ``stall.position["crank"]``.
+
+    Examples
+    --------
+    >>> import linkwork as lw
+    >>> [stall.proved for stall in lw.forces.stalls(lw.example("crank-press"))]
+    []
+    """
+
+    input: str
+    value: float
+    unit: str
+    bracket: tuple[float, float]
+    proved: bool
+    position: Position
+
+
+# ----------------------------------------------------------------------
+# The evidence of forces as sentences.
+
+
+def force_status_fields(found: Reactions) -> Iterator[tuple[str, str]]:
+    """The number of rows with forces, and those without by their reasons."""
+    counts = Counter(status for status in found.statuses if status is not ForceStatus.FOUND)
+    yield "found", str(len(found) - counts.total())
+    yield from ((status.label, f"{n}: {status.value}") for status, n in counts.items())
+
+
+def finite_forces(found: Reactions, names: Sequence[str] = ()) -> list[str]:
+    """The forces with a finite value in some row, of ``names`` or of all."""
+    return [
+        name
+        for name in names or found.values
+        if name != "disagreement" and np.isfinite(found.values[name]).any()
+    ]
+
+
+def force_fields(found: Reactions, stalls: Sequence[Stall] = ()) -> Iterator[tuple[str, str]]:
+    """Stalls, how far virtual work and free bodies agree, and what is wrong with joints."""
+    yield from (("stalls", _stall(stall)) for stall in stalls)
+    if "disagreement" in found.values:
+        worst = np.nanmax(found.values["disagreement"], initial=0.0)
+        yield "check", f"virtual work and free bodies agree to {worst:.1e} of the largest term"
+    yield from undefined_fields(found)
+    lost = [name for name, rows in found.undetermined.items() if rows.any()]
+    if lost:
+        yield "undetermined", f"{', '.join(lost)}: {ForceStatus.UNDETERMINED.value}"
+    for name, rows in found.lifted.items():
+        if rows.any():
+            yield "lifts off", f"{name} would have to pull{_where(rows)}"
+    for name, rows in found.slipping.items():
+        if rows.any():
+            yield "slips", f"{name} needs more friction than there is{_where(rows)}"
+    unsure = int(np.sum(~found.proved))
+    if unsure:
+        yield "not proved", f"that friction leaves an equilibrium, or none, in {unsure} rows"
+
+
+def undefined_fields(found: Reactions) -> Iterator[tuple[str, str]]:
+    """Loads without a finite value."""
+    for name, rows in found.undefined.items():
+        if rows.any():
+            yield "no value", f"{name}{_where(rows)}"
+
+
+def _where(rows: BoolArray) -> str:
+    return "" if rows.ndim == 0 else f" in {int(rows.sum())} rows"
+
+
+def _stall(stall: Stall) -> str:
+    """Where friction stops the mechanism, and whether this is proved."""
+    moves, locked = stall.bracket
+    proof = (
+        f"proved: moves at {moves:.10g}, locked at {locked:.10g}" if stall.proved else "not proved"
+    )
+    others = (name for name in stall.position.unknowns if name != stall.input)
+    places = [
+        f"{name} = {stall.position[name]:.8g} {stall.position.value_units[name]}"
+        for name in (stall.input, *islice(others, 1))
+    ]
+    return f"at {', '.join(places)} ({proof})"

@@ -8,7 +8,10 @@ from linkwork.core.foundation.loading import loader
 
 if TYPE_CHECKING:
     from linkwork.readers.assembly import Exported as Exported, LeftOut as LeftOut
-    from linkwork.readers.formats import Imported as Imported
-    from linkwork.readers.importing import exported as exported, imported as imported
+    from linkwork.readers.importing import (
+        Imported as Imported,
+        exported as exported,
+        imported as imported,
+    )
 else:
     __getattr__ = loader(__name__)

@@ -14,8 +14,7 @@ from linkwork.core.commands.terminal import (
     wrapped,
 )
 from linkwork.core.textfile.writer import write_text as text_of
-from linkwork.readers.formats import FORMATS, Imported
-from linkwork.readers.importing import imported
+from linkwork.readers.importing import FORMATS, Imported, imported
 
 
 @click.command("import")

@@ -11,7 +11,7 @@ import re
 from linkwork.core.foundation.names import GROUND
 from linkwork.core.foundation.units import LENGTHS
 from linkwork.core.mechanism.inputs import Input
-from linkwork.core.mechanism.part.weld import Weld
+from linkwork.core.mechanism.part.springs import Weld
 from linkwork.readers.assembly import Assembly, Source, drive_joint
 from linkwork.readers.robots import Element, xml_tree
 

@@ -28,22 +28,22 @@ from linkwork.core.commands.terminal import (
 )
 from linkwork.core.foundation.errors import InputError, MechanismError, MechanismFileError
 from linkwork.core.foundation.files import OwnFiles, as_path
-from linkwork.core.results.listing.motion_listing import Column, rounded_down, significant
+from linkwork.core.results.listing import Column, rounded_down, significant
 from linkwork.core.textfile.writer import save
-from linkwork.synthesis.atlas.path_atlas import NearPath, PathAtlas
+from linkwork.synthesis.atlas import NearPath, PathAtlas
 from linkwork.synthesis.defects.verdicts import DefectKind, JudgedDesign
 from linkwork.synthesis.designs_folder import (
     FolderOptions,
     check_folder,
     keeps_earlier,
+    synthesis_facts,
+    task_copy,
     write_designs,
 )
-from linkwork.synthesis.designs_page import synthesis_facts
 from linkwork.synthesis.solvers.result import Synthesis, front_of, goal_misses
 from linkwork.synthesis.solvers.solving import advice_of, remarks_on
-from linkwork.synthesis.task_copy import task_copy
 from linkwork.synthesis.task_objects import Task
-from linkwork.synthesis.tasks.curve_file import read_curve
+from linkwork.synthesis.tasks.conditions import read_curve
 
 # ----------------------------------------------------------------------
 # A synthesis as a page of text: counts, defects by kind, dyads and delivered designs.

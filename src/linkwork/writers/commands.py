@@ -43,25 +43,19 @@ from linkwork.core.commands.terminal import (
     title_lines,
     wrapped,
 )
-from linkwork.core.drawing.picture_file import check_picture, write
+from linkwork.core.drawing.matplotlib_writer import check_picture, write
 from linkwork.core.drawing.scene import THEMES, theme_named
 from linkwork.core.foundation.errors import InputError, choices
 from linkwork.core.foundation.statuses import ChangePointPolicy
-from linkwork.core.results.listing.motion_listing import Column
-from linkwork.readers.formats import WRITERS
-from linkwork.readers.importing import exported
-from linkwork.writers.charts.plotting import (
-    CIRCUIT_KINDS,
-    MOTION_KINDS,
-    circuits_plot,
-    motion_plot,
-)
-from linkwork.writers.code.languages import code_of, language_of
+from linkwork.core.results.listing import Column
+from linkwork.readers.importing import WRITERS, exported
+from linkwork.writers.charts.plane import CIRCUIT_KINDS, MOTION_KINDS, circuits_plot, motion_plot
+from linkwork.writers.code.programs import code_of, language_of
 from linkwork.writers.plates.files import check_plate_file, plates_of
 from linkwork.writers.plates.plate import PlateOptions, PlateStack
 from linkwork.writers.plates.stack import stack_of
-from linkwork.writers.report.findings import template_of
 from linkwork.writers.report.report import check_report_file, write_report
+from linkwork.writers.report.sections import template_of
 from linkwork.writers.robot.files import check_robot_file, robot_of
 from linkwork.writers.writing import kind_of, writers
 

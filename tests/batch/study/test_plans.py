@@ -19,7 +19,7 @@ from linkwork.core.textfile import schema_of, schema_text
 from linkwork.families import Plan, from_table, grid, latin_hypercube, random
 from linkwork.families.sampling import CHUNK, Distribution, Normal
 from linkwork.families.study import read_plan, read_plan_text
-from linkwork.families.study.plan_keys import PLAN as FORM
+from linkwork.families.study.plan import PLAN as FORM
 from linkwork.families.study.study import (
     Comparison,
     Word,

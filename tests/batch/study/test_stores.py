@@ -315,7 +315,7 @@ def test_workers_that_cannot_start_end_the_run(
 def test_a_worker_of_another_version_refuses(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr("linkwork.families.study.plan.linkwork_version", lambda: "7.8.9")
+    monkeypatch.setattr("linkwork.families.study.study.linkwork_version", lambda: "7.8.9")
     with pytest.raises(InputError, match=r"^the study was started with Linkwork 7\.8\.9, a worker"):
         run_study(study(*FEW), tmp_path / "out.zarr", workers=2)
 
@@ -335,7 +335,7 @@ def test_the_device_of_a_plan_computes_its_designs(
         return sweep(self, **options)
 
     monkeypatch.setattr(Family, "sweep", noted)
-    monkeypatch.setattr("linkwork.families.gpu.kernel.graphics_card", lambda: None)
+    monkeypatch.setattr("linkwork.families.gpu.march.graphics_card", lambda: None)
     run_study(plan, tmp_path / "out.zarr")  # in this process: a card serves one
     assert asked == ["gpu"] * plan.chunks
     with pytest.raises(InputError, match="device"):

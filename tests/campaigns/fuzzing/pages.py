@@ -13,11 +13,11 @@ from typing import Any
 import numpy as np
 
 import linkwork as lw
-from linkwork.app.live.bench import Bench
 from linkwork.app.live.events import ProblemsFound, Refused
-from linkwork.app.live.mechanism_file import MechanismFile
 from linkwork.app.live.messages import decoded, encoded, kind_of
+from linkwork.app.live.opened_file import MechanismFile
 from linkwork.app.live.requests import REQUESTS, Picked, Simulate
+from linkwork.app.live.session import Bench
 from linkwork.core.mechanism.part.index import PARTS
 from linkwork.core.textfile.reader import blank_sheet
 from linkwork.synthesis.solvers.solving import solve_task

@@ -16,17 +16,17 @@ from linkwork.core.commands.main import linkwork
 from linkwork.core.foundation.arrays import Array, ComplexArray
 from linkwork.core.textfile.reader import example_text
 from linkwork.families.study import read_plan_text, run_study
-from linkwork.synthesis.atlas.path_atlas import (
+from linkwork.synthesis.atlas import (
     SHIPPED,
     AtlasFamily,
     NearPath,
     PathAtlas,
+    atlas_of_stores,
     coefficients,
     distances,
     in_ways,
     placed_on_curve,
 )
-from linkwork.synthesis.atlas.stored_paths import atlas_of_stores
 
 _PLANS = Path(__file__).parents[3] / "examples" / "atlas"
 _ANGLES = np.linspace(0.0, 2.0 * np.pi, 180, endpoint=False)

@@ -17,15 +17,15 @@ from linkwork.circuits.homotopy.path_tracking import (
     Paths,
     track,
 )
+from linkwork.synthesis.precision.positions import prove_linkages
 from linkwork.synthesis.precision.problem import PrecisionProblem, ProductSums
-from linkwork.synthesis.precision.proofs import prove_linkages
-from linkwork.synthesis.precision.sampling import positions_with_samples
 from linkwork.synthesis.precision.solving import (
     CompiledTracker,
     PrecisionFourBars,
     SparingTracker,
     compiled_pays,
     four_bars_through,
+    positions_with_samples,
 )
 from tests.design.precision.four_bar_tasks import (
     GROUND,
@@ -121,7 +121,7 @@ def test_nothing_is_proved_of_a_linkage_that_misses_a_point() -> None:
 
 
 def test_a_task_without_real_solutions_has_an_empty_list(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("linkwork.synthesis.precision.solving.ALMOST_REAL", 0.0)
+    monkeypatch.setattr("linkwork.core.foundation.arrays.ALMOST_REAL", 0.0)
     found = four_bars_through(positions(LINE, None, 0.0, 1.0), track)
     assert (len(found), found.real, found.roots.complete) == (0, 0, True)
     assert found.moving_a.shape == found.guided.shape == (0, 5)

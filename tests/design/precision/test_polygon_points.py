@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 import linkwork as lw
-from linkwork.synthesis.poses.pose_families import spread_pivots
-from linkwork.synthesis.precision.sampling import points_in_polygon, positions_with_samples
+from linkwork.synthesis.poses.guiding_linkage import spread_pivots
+from linkwork.synthesis.precision.solving import points_in_polygon, positions_with_samples
 from linkwork.synthesis.tasks.conditions import Wishes
 
 # an L, a triangle without level sides, a narrow diagonal strip, two prongs

@@ -6,7 +6,7 @@ import numpy as np
 
 from linkwork.circuits.homotopy.monodromy import Member
 from linkwork.core.foundation.arrays import Array, ComplexArray
-from linkwork.synthesis.six_bars.watt import WATT
+from linkwork.synthesis.six_bars import WATT
 
 #: Crank and arm b seen along A0 B0, rocker and arm c seen along C0 B0, at the first position.
 ARMS = (0.0361 + 0.0034j, 0.0671 - 0.0088j, -0.1173 - 0.3793j, -0.2613 + 1.0242j)

@@ -7,7 +7,7 @@ import pytest
 
 from linkwork.circuits.homotopy.bilinear_homotopy import normal_numbers
 from linkwork.circuits.homotopy.path_tracking import ParameterPath
-from linkwork.synthesis.six_bars.watt import WATT, bell_crank_turns
+from linkwork.synthesis.six_bars import WATT, bell_crank_turns
 
 
 def test_derivatives_are_those_of_the_equations() -> None:

@@ -8,8 +8,8 @@ import pytest
 import linkwork as lw
 from linkwork.circuits.homotopy.path_tracking import track
 from linkwork.core.foundation.arrays import Array
-from linkwork.synthesis.six_bars import watt as start_member
-from linkwork.synthesis.six_bars.watt import WATT, prove_six_bars, watt_six_bars
+from linkwork.synthesis import six_bars as start_member
+from linkwork.synthesis.six_bars import WATT, prove_six_bars, watt_six_bars
 from tests.design.six_bars.six_bars import ARMS, chebyshev, member_of, turned
 
 INPUTS: Array = 0.5 * np.pi * chebyshev()

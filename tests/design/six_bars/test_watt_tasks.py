@@ -13,10 +13,10 @@ import pytest
 import linkwork as lw
 from linkwork.circuits.homotopy.monodromy import Member
 from linkwork.circuits.homotopy.parameter_roots import ParameterRoots
-from linkwork.synthesis.loops.candidates import Drive
+from linkwork.synthesis import six_bars as watt_six_bars
 from linkwork.synthesis.loops.driven_loop import Range
-from linkwork.synthesis.six_bars import watt as watt_six_bars
-from linkwork.synthesis.six_bars.watt import WattSixBars
+from linkwork.synthesis.loops.limits import Drive
+from linkwork.synthesis.six_bars import WattSixBars
 from linkwork.synthesis.solvers.solving import wishes_of
 from linkwork.synthesis.solvers.watt import (
     WattGroup,

@@ -18,8 +18,8 @@ from linkwork.synthesis.improvement.curves import (
     FourBarCurves,
     SliderCrankCurves,
 )
-from linkwork.synthesis.loops.candidates import Drive
-from linkwork.synthesis.solvers.curves import curve_goal_of
+from linkwork.synthesis.loops.limits import Drive
+from linkwork.synthesis.solvers.paths import curve_goal_of
 from linkwork.synthesis.solvers.solving import remarks_on, wishes_of
 
 # Kunjur and Krishnamurty's 18 points, as printed by Bulatovic et al. 2016

@@ -10,7 +10,7 @@ import pytest
 
 import linkwork as lw
 from linkwork.circuits.branches import TracedCurve, trace_with_proof
-from linkwork.circuits.followed_circuit import FollowedCircuit, explorer_of, straight_way
+from linkwork.circuits.circuit_sweep import FollowedCircuit, explorer_of, straight_way
 from linkwork.circuits.results import Circuits
 from linkwork.core.motion.following import Drive
 from tests.campaigns import library_defects
@@ -237,7 +237,7 @@ def _traced(monkeypatch: pytest.MonkeyPatch) -> list[TracedCurve]:
         traced.append(trace_with_proof(*given, **options))
         return traced[-1]
 
-    monkeypatch.setattr("linkwork.circuits.arcs.trace_with_proof", counted)
+    monkeypatch.setattr("linkwork.circuits.branches.trace_with_proof", counted)
     return traced
 
 

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from linkwork.core.foundation.arrays import Array, ComplexArray
-from linkwork.synthesis.poses.dyad_set import DyadSet, PoseSet
+from linkwork.synthesis.poses.burmester import DyadSet, PoseSet
 from linkwork.synthesis.poses.dyads import Refusal, solve_five_poses
 from tests.campaigns.poses import pose_campaign, random_poses
 from tests.oracles.burmester import crank_turns

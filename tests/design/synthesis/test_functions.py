@@ -14,8 +14,12 @@ import linkwork as lw
 from linkwork.core.foundation.arrays import Array
 from linkwork.core.foundation.errors import MechanismError
 from linkwork.synthesis.loops.driven_loop import Range
-from linkwork.synthesis.solvers.function_synthesis import freudenstein
-from linkwork.synthesis.solvers.functions import FunctionWishes, rocker_errors, slider_errors
+from linkwork.synthesis.solvers.functions import (
+    FunctionWishes,
+    freudenstein,
+    rocker_errors,
+    slider_errors,
+)
 from linkwork.synthesis.solvers.solving import remarks_on
 from linkwork.synthesis.tasks.conditions import Wishes
 

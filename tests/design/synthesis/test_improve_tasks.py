@@ -15,7 +15,7 @@ from linkwork.core.mechanism.linkage import Linkage
 from linkwork.synthesis.commands import synthesis_lines
 from linkwork.synthesis.defects.verdicts import JudgedDesign
 from linkwork.synthesis.designs_folder import FolderOptions, write_designs
-from linkwork.synthesis.loops.candidates import Drive
+from linkwork.synthesis.loops.limits import Drive
 from linkwork.synthesis.solvers import improvement as improvement_synthesis
 from linkwork.synthesis.solvers.result import relative_misses
 from linkwork.synthesis.solvers.solving import advice_of, remarks_on, wishes_of

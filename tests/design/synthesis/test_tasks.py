@@ -10,7 +10,7 @@ import jsonschema
 import pytest
 
 import linkwork as lw
-from linkwork.core.textfile.schema import schema_of
+from linkwork.core.textfile.keys import schema_of
 from linkwork.core.textfile.toml_text import data_of
 from linkwork.synthesis.defects import by_circuits
 from linkwork.synthesis.tasks.task_file import read_task_text

@@ -6,9 +6,8 @@ import numpy as np
 import pytest
 
 from linkwork.synthesis.defects.verdicts import DefectKind, judge
-from linkwork.synthesis.loops.candidates import Candidates, Drive, LoopKind
 from linkwork.synthesis.loops.driven_loop import NOWHERE, Range, pivots_at
-from linkwork.synthesis.loops.limits import cross, driven_loops
+from linkwork.synthesis.loops.limits import Candidates, Drive, LoopKind, cross, driven_loops
 from linkwork.synthesis.tasks.conditions import Wishes, distances_to_segments
 from tests.campaigns.defects import defect_campaign, random_designs
 

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 import linkwork as lw
-from linkwork.core.results.quantities import located_rows
+from linkwork.core.results.quantities import rows as located_rows
 from tests.campaigns.extremes import extreme_campaign
 
 STEPS = (1.0, 5.0, 10.0)

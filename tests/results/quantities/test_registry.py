@@ -18,7 +18,7 @@ from linkwork.core.foundation.errors import InputError, MechanismError, UnknownN
 from linkwork.core.results.quantities.registry import EVIDENCE, MOTION_QUANTITIES, ROW_QUANTITIES
 from linkwork.core.results.tables import csv_lines
 from linkwork.families.study import read_plan_text
-from linkwork.writers.charts.columns import column_of
+from linkwork.writers.charts.chart import column_of
 from linkwork.writers.workbook.workbook import workbook_of
 from tests.viewer.unpacking import unpacked
 

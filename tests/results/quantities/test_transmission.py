@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import linkwork as lw
-from linkwork.writers.charts.columns import column_of
+from linkwork.writers.charts.chart import column_of
 
 
 def four_bar_angle(a: float, b: float, c: float, d: float, theta: np.ndarray) -> np.ndarray:

@@ -14,7 +14,7 @@ import pytest
 from websockets.sync.client import ClientConnection, connect
 
 import linkwork as lw
-from linkwork.app.live.mechanism_file import MechanismFile
+from linkwork.app.live.opened_file import MechanismFile
 from linkwork.app.live.server import LiveServer
 from linkwork.app.live.workbench import Workbench
 

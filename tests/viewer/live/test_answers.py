@@ -12,7 +12,7 @@ import pytest
 
 import linkwork as lw
 from linkwork.app.live import events as tell, requests as ask
-from linkwork.app.live.mechanism_file import MechanismFile
+from linkwork.app.live.opened_file import MechanismFile
 from linkwork.app.live.workbench import Workbench
 from tests.viewer.live.conftest import FOUR_BAR
 from tests.viewer.unpacking import unpacked

@@ -10,7 +10,7 @@ import pytest
 
 import linkwork as lw
 from linkwork import example_text
-from linkwork.app.live.browser_desk import BrowserDesk
+from linkwork.app.live.session import BrowserDesk
 from linkwork.core.textfile.link import fragment_of
 from linkwork.synthesis.solvers.solving import solve_task
 from tests.viewer.live.conftest import FOUR_BAR
@@ -119,7 +119,7 @@ def test_a_newer_change_cancels_a_cycle_that_is_being_solved(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.chdir(tmp_path)
-    monkeypatch.setattr("linkwork.app.live.browser_desk._LOOK_FOR_MESSAGES", 0.0)
+    monkeypatch.setattr("linkwork.app.live.session._LOOK_FOR_MESSAGES", 0.0)
     page = Page(pauses=True)
     page.desk.open("four-bar.toml", FOUR_BAR)
     page.later = [json.dumps({"kind": "set_number", "name": "a", "value": 42, "id": 2})]

@@ -9,7 +9,7 @@ import pytest
 import linkwork as lw
 from linkwork.app.live import requests as ask
 from linkwork.app.live.file_state import FileState
-from linkwork.app.live.mechanism_file import MechanismFile
+from linkwork.app.live.opened_file import MechanismFile
 from linkwork.app.live.workbench import Workbench
 
 

@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 import linkwork as lw
-from linkwork.app.live.mechanism_file import MechanismFile
+from linkwork.app.live.opened_file import MechanismFile
 from tests.viewer.conftest import browser as browser  # the fixture, for this folder too
 from tests.viewer.live.test_by_keyboard import shown
 

@@ -11,7 +11,7 @@ from typing import Any
 import pytest
 
 import linkwork as lw
-from linkwork.app.live.mechanism_file import MechanismFile
+from linkwork.app.live.opened_file import MechanismFile
 from linkwork.app.live.server import LiveServer
 from linkwork.app.live.workbench import Workbench
 from linkwork.core.textfile.reader import blank_sheet

@@ -10,7 +10,7 @@ import pytest
 import linkwork as lw
 from linkwork.app.live import events as tell, requests as ask
 from linkwork.app.live.file_state import FileState
-from linkwork.app.live.mechanism_file import MechanismFile
+from linkwork.app.live.opened_file import MechanismFile
 from linkwork.app.live.palette import PALETTE
 from linkwork.app.live.workbench import Workbench
 from linkwork.core.mechanism.part.index import PARTS

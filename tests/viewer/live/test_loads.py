@@ -10,8 +10,8 @@ import linkwork as lw
 from linkwork import example_text
 from linkwork.app.live import events as tell, requests as ask
 from linkwork.app.live.file_state import FileState
-from linkwork.app.live.mechanism_file import MechanismFile
-from linkwork.app.live.whole_edits import Rename
+from linkwork.app.live.opened_file import MechanismFile
+from linkwork.app.live.requests import Rename
 from linkwork.app.live.workbench import Workbench
 from linkwork.core.mechanism.linkage import Linkage
 from tests.described import described_as

@@ -12,10 +12,10 @@ import pytest
 import linkwork as lw
 from linkwork import example_text
 from linkwork.app.live import events as tell, requests as ask
-from linkwork.app.live.bench import Bench
-from linkwork.app.live.mechanism_file import new_file, task_template
 from linkwork.app.live.messages import MessageError, decoded
+from linkwork.app.live.opened_file import new_file, task_template
 from linkwork.app.live.server import LiveServer
+from linkwork.app.live.session import Bench
 from linkwork.synthesis.solvers.solving import solve_task
 from tests.exchange.samples import GEOGEBRA, MJCF, PMKS_LINES, PYSLVS, URDF, dxf_text, packed
 

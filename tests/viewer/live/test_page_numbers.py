@@ -15,7 +15,7 @@ import pytest
 
 import linkwork as lw
 from linkwork.app.live import events as tell, requests as ask
-from linkwork.app.live.mechanism_file import MechanismFile
+from linkwork.app.live.opened_file import MechanismFile
 from linkwork.app.live.workbench import Workbench
 from linkwork.core.mechanism.linkage import Linkage
 from linkwork.core.results.tables import csv_text

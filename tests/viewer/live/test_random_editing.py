@@ -12,10 +12,10 @@ from hypothesis import HealthCheck, given, settings, strategies as st
 
 import linkwork as lw
 from linkwork.app.live import events as tell, requests as ask
-from linkwork.app.live.bench import Bench
 from linkwork.app.live.file_state import FileState
-from linkwork.app.live.mechanism_file import MechanismFile
 from linkwork.app.live.messages import encoded
+from linkwork.app.live.opened_file import MechanismFile
+from linkwork.app.live.session import Bench
 from linkwork.app.live.task_requests import OpenTask
 from linkwork.app.live.workbench import Workbench
 from linkwork.synthesis.solvers.solving import solve_task

@@ -13,8 +13,8 @@ import pytest
 
 import linkwork as lw
 from linkwork.app.live import events as tell, requests as ask
-from linkwork.app.live.browser_desk import BrowserDesk
-from linkwork.app.live.mechanism_file import MechanismFile
+from linkwork.app.live.opened_file import MechanismFile
+from linkwork.app.live.session import BrowserDesk
 from linkwork.app.live.workbench import Workbench
 from linkwork.app.pages.packing import play_order
 from linkwork.synthesis.solvers.solving import solve_task

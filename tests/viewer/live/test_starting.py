@@ -13,7 +13,7 @@ import pytest
 import linkwork as lw
 from linkwork.app.live import events as tell, requests as ask
 from linkwork.app.live.file_state import FileState
-from linkwork.app.live.mechanism_file import new_file
+from linkwork.app.live.opened_file import new_file
 from linkwork.app.live.server import LiveServer
 from linkwork.app.live.workbench import Workbench
 from linkwork.core.foundation.errors import InputError

@@ -13,14 +13,14 @@ import pytest
 
 import linkwork as lw
 from linkwork.app.live import events as tell, requests as ask, task_requests as do
-from linkwork.app.live.answers import Hurry
-from linkwork.app.live.bench import Bench
-from linkwork.app.live.mechanism_file import MechanismFile
+from linkwork.app.live.messages import Hurry
+from linkwork.app.live.opened_file import MechanismFile
 from linkwork.app.live.server import LiveServer
+from linkwork.app.live.session import Bench
 from linkwork.app.live.task_events import DesignFound, DesignsSuggested, TaskSolved, TaskUnsolved
+from linkwork.synthesis import suggesting
 from linkwork.synthesis.solvers.result import Synthesis
 from linkwork.synthesis.solvers.solving import solve_task
-from linkwork.synthesis.suggestion import suggesting
 from linkwork.synthesis.tasks.task import Task
 from tests.viewer.accessibility import assert_accessible
 

@@ -12,12 +12,10 @@ import pytest
 
 import linkwork as lw
 from linkwork.app.live import events as tell, requests as ask, task_requests as do
-from linkwork.app.live.answers import GivenUpError, Hurry
-from linkwork.app.live.bench import Bench
 from linkwork.app.live.file_state import FileState
-from linkwork.app.live.mechanism_file import MechanismFile, new_file, task_template
-from linkwork.app.live.opened_file import NoSign
-from linkwork.app.live.session import Desk
+from linkwork.app.live.messages import GivenUpError, Hurry
+from linkwork.app.live.opened_file import MechanismFile, NoSign, new_file, task_template
+from linkwork.app.live.session import Bench, Desk
 from linkwork.app.live.task_events import (
     CognatesFound,
     DesignFound,
@@ -28,12 +26,11 @@ from linkwork.app.live.task_events import (
 )
 from linkwork.app.live.workbench import Workbench
 from linkwork.app.task import designs
-from linkwork.app.task.bench import TaskBench
-from linkwork.app.task.cycle import SolveTask
+from linkwork.app.task.bench import SolveTask, TaskBench
 from linkwork.core.foundation.errors import InputError
-from linkwork.core.results.listing.motion_listing import rounded_down
-from linkwork.synthesis.loops.candidates import GUIDED
-from linkwork.synthesis.six_bars import watt as watt_six_bars
+from linkwork.core.results.listing import rounded_down
+from linkwork.synthesis import six_bars as watt_six_bars
+from linkwork.synthesis.loops.limits import GUIDED
 from linkwork.synthesis.solvers.result import Synthesis
 from linkwork.synthesis.solvers.solving import solve_task
 from linkwork.synthesis.tasks.task import MECHANISMS, Task

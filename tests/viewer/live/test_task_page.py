@@ -9,9 +9,9 @@ from typing import Any
 import pytest
 
 import linkwork as lw
-from linkwork.app.live.bench import Bench
-from linkwork.app.live.mechanism_file import MechanismFile, new_file, task_template
+from linkwork.app.live.opened_file import MechanismFile, new_file, task_template
 from linkwork.app.live.server import LiveServer
+from linkwork.app.live.session import Bench
 from linkwork.synthesis.solvers.solving import solve_task
 from tests.viewer.accessibility import assert_accessible
 

@@ -11,7 +11,7 @@ from linkwork.app.live import events as tell, requests as ask
 from linkwork.app.live.file_state import FileState
 from linkwork.app.live.number_edits import TypedUnits
 from linkwork.app.live.palette import part_of
-from linkwork.app.live.whole_edits import AddOutput, ChangeUnits, Duplicate, Mirror, Rename
+from linkwork.app.live.requests import AddOutput, ChangeUnits, Duplicate, Mirror, Rename
 from linkwork.app.live.workbench import Workbench
 from tests.viewer.live.test_workbench import number, only
 

@@ -14,8 +14,8 @@ import pytest
 import linkwork as lw
 from linkwork.app.live import events as tell, requests as ask
 from linkwork.app.live.file_state import ChangeableNumber, FileState
-from linkwork.app.live.mechanism_file import MechanismFile
-from linkwork.app.live.whole_edits import Mirror
+from linkwork.app.live.opened_file import MechanismFile
+from linkwork.app.live.requests import Mirror
 from linkwork.app.live.workbench import Workbench
 from linkwork.app.pages.offline_page import embed_snippet, qr_svg
 from linkwork.core.mechanism.linkage import Linkage

@@ -9,8 +9,8 @@ import pytest
 import linkwork as lw
 from linkwork.app.live import events as tell, requests as ask
 from linkwork.app.live.file_state import FileState
-from linkwork.app.live.mechanism_file import MechanismFile
-from linkwork.app.live.whole_edits import Duplicate, Mirror
+from linkwork.app.live.opened_file import MechanismFile
+from linkwork.app.live.requests import Duplicate, Mirror
 from linkwork.app.live.workbench import Workbench
 from tests.viewer.live.conftest import FOUR_BAR
 

@@ -21,7 +21,7 @@ import pytest
 
 import linkwork as lw
 from linkwork import example_text
-from linkwork.app.live.browser_desk import BrowserDesk
+from linkwork.app.live.session import BrowserDesk
 from linkwork.app.web.web_app import pyodide_files, web_folder
 from linkwork.synthesis.solvers.solving import solve_task
 from tests.library_mechanisms import driven_examples

@@ -13,10 +13,15 @@ from linkwork.core.foundation.names import GROUND, canonical, find_spelling
 from linkwork.core.foundation.values import Key, NumberValue as NumberKey
 from linkwork.core.mechanism.description import Description
 from linkwork.core.mechanism.inputs import MOTOR_KEYS, Input
-from linkwork.core.mechanism.loaded import LoadedBodies
-from linkwork.core.mechanism.machine import FRICTION_KEYS, GRAVITY_KEYS, STOP_KEYS, Gravity
+from linkwork.core.mechanism.machine import (
+    FRICTION_KEYS,
+    GRAVITY_KEYS,
+    STOP_KEYS,
+    Gravity,
+    LoadedBodies,
+)
 from linkwork.core.mechanism.part.index import JoinedBodies
-from linkwork.core.textfile.text_edits import TextEdits
+from linkwork.core.textfile.writer import TextEdits
 
 
 def masses_shown(description: Description) -> Iterator[MassShown]:

@@ -12,7 +12,7 @@ from linkwork.core.foundation.names import canonical
 from linkwork.core.mechanism.description import Description
 from linkwork.core.mechanism.linkage import Draft
 from linkwork.core.mechanism.part.gears import WheelPair
-from linkwork.core.textfile.text_edits import TextEdits
+from linkwork.core.textfile.writer import TextEdits
 
 
 def check_point(text: TextEdits, name: str) -> str:

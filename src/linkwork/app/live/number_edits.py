@@ -24,8 +24,8 @@ from linkwork.core.foundation.values import NumberValue
 from linkwork.core.mechanism.description import Description
 from linkwork.core.mechanism.linkage import Draft
 from linkwork.core.mechanism.varied_numbers import VariedNumber, number_named
-from linkwork.core.textfile.text_edits import TextEdits
 from linkwork.core.textfile.toml_text import data_of
+from linkwork.core.textfile.writer import TextEdits
 from linkwork.design.edits.entries import measured_by
 from linkwork.design.edits.unit_change import FileDegrees
 

@@ -38,19 +38,18 @@ from linkwork.app.live.file_state import (
 )
 from linkwork.app.live.force_entries import entries_shown, masses_shown
 from linkwork.app.live.history import History
-from linkwork.app.live.part_entries import parts_shown
+from linkwork.app.live.palette import parts_shown
 from linkwork.app.live.subject import Subject, missing_items
 from linkwork.app.pages.animation import FilmOptions, animation, check_animation
 from linkwork.app.pages.moving_scene import moving_scene
-from linkwork.app.pages.offline_page import offline_page
+from linkwork.app.pages.offline_page import offline_page, still_page
 from linkwork.app.pages.page_building import motion_page
 from linkwork.app.pages.page_data import PageData
-from linkwork.app.pages.still_page import still_page
 from linkwork.circuits.results import Branch, Circuit, Circuits, Configurations
 from linkwork.core.api.mechanism import Mechanism
 from linkwork.core.drawing.mechanism_scene import scene_of
 from linkwork.core.drawing.scene import Scene
-from linkwork.core.drawing.svg import FixedInks, inline_svg
+from linkwork.core.drawing.vector_files import FixedInks, inline_svg
 from linkwork.core.equations.notation import PlainText
 from linkwork.core.equations.writing import EquationSheet
 from linkwork.core.foundation.errors import (
@@ -67,10 +66,9 @@ from linkwork.core.mechanism.linkage import Draft
 from linkwork.core.mechanism.loops import Loops
 from linkwork.core.mechanism.varied_numbers import varied_numbers
 from linkwork.core.motion.iterating import moving_loops
-from linkwork.core.results.limit import Limit
+from linkwork.core.results.failure import Limit
 from linkwork.core.results.motion import Motion
-from linkwork.core.results.nearest_assembly import LinkEnd, NearestAssembly
-from linkwork.core.results.position import Iterate, Iterates, Position
+from linkwork.core.results.position import Iterate, Iterates, LinkEnd, NearestAssembly, Position
 from linkwork.core.results.tables import csv_text
 
 _MEDIA_TYPES = {

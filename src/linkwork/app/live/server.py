@@ -20,10 +20,9 @@ from functools import lru_cache
 from importlib import resources
 from typing import Any
 
-from linkwork.app.live.bench import Bench
 from linkwork.app.live.events import Event, Refused
 from linkwork.app.live.messages import LARGEST_MESSAGE, MessageError, decoded, encoded
-from linkwork.app.live.session import Desk
+from linkwork.app.live.session import Bench, Desk
 from linkwork.app.live.workbench import Workbench
 from linkwork.core.foundation.errors import InputError
 from linkwork.core.foundation.loading import installed_with

@@ -16,8 +16,8 @@ from linkwork.app.live.requests import (
     SetGround,
     SetInput,
 )
+from linkwork.app.pages.offline_page import still_page
 from linkwork.app.pages.page_data import PageData
-from linkwork.app.pages.still_page import still_page
 from linkwork.circuits.failure.remedies import nearest_assembly
 from linkwork.core.api.mechanism import Mechanism
 from linkwork.core.drawing.labels import Kept

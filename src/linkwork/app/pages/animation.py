@@ -382,7 +382,7 @@ def animate(
 def solving_page(mechanism: Mechanism, sliders: Sequence[str], motion: Motion) -> SolvingPage:
     """The solver for a page that shows a sweep with sliders; see :meth:`animate`."""
     # kernels are loaded when a page with sliders is written
-    from linkwork.app.pages.solver_page import page_solver
+    from linkwork.app.pages.offline_page import page_solver
     from linkwork.families.recorded_design import record_design
 
     if not motion.found.any():

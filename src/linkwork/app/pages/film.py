@@ -8,8 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from linkwork.app.pages.moving_scene import MovingScene
-from linkwork.core.drawing.matplotlib_settings import house_settings
-from linkwork.core.drawing.matplotlib_writer import Brush
+from linkwork.core.drawing.matplotlib_writer import Brush, house_settings
 from linkwork.core.drawing.pose import lines_within
 from linkwork.core.drawing.scene import LIGHT, Box, Theme
 from linkwork.core.foundation.arrays import AnyArray

@@ -32,7 +32,7 @@ from linkwork.core.drawing.mechanism_scene import configuration_sheet, reach_of,
 from linkwork.core.drawing.paths import faint_symbols, further_positions
 from linkwork.core.drawing.pose import Pose, reached_caption
 from linkwork.core.drawing.scene import DARK, LIGHT, Box, Scene
-from linkwork.core.drawing.svg import Inks, inline_svg
+from linkwork.core.drawing.vector_files import Inks, inline_svg
 from linkwork.core.foundation.errors import InputError, choices
 from linkwork.core.foundation.loading import installed_with
 from linkwork.core.motion.iterating import moving_loops

@@ -36,8 +36,7 @@ from linkwork.core.drawing.scene import (
     Text,
 )
 from linkwork.core.equations.input_motion import TIME
-from linkwork.core.foundation.arrays import Array, BoolArray, ComplexArray, CountArray
-from linkwork.core.foundation.rounding import EQUAL_ROWS
+from linkwork.core.foundation.arrays import EQUAL_ROWS, Array, BoolArray, ComplexArray, CountArray
 from linkwork.core.results.motion import Motion
 
 #: The ``order`` of a column of plain floats of eight or four bytes.

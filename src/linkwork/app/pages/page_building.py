@@ -31,21 +31,21 @@ from linkwork.app.pages.page_data import (
     VectorData,
 )
 from linkwork.core.drawing.annotations import Force, check_forces, force_unit
+from linkwork.core.drawing.dimensions import polygon
 from linkwork.core.drawing.mechanism_scene import reach_of
 from linkwork.core.drawing.pose import Pose, printed_formula, printed_name
 from linkwork.core.drawing.scene import COINCIDENT, DARK, LIGHT, Box, Role, Theme
-from linkwork.core.drawing.vectors import polygon
 from linkwork.core.foundation.arrays import Array, ComplexArray
 from linkwork.core.foundation.errors import InputError
 from linkwork.core.mechanism.description import LIMITS, Question
 from linkwork.core.results.motion import Motion
+from linkwork.core.results.position import MovingLoop
 from linkwork.core.results.quantities.definition import Asked, Group
 from linkwork.core.results.quantities.motions import PATH_LENGTH, STROKE, TIME_RATIO
 from linkwork.core.results.quantities.registry import Call
 from linkwork.core.results.quantities.rows import RECOMMENDED, TRANSMISSION_ANGLE
 from linkwork.core.results.quantity import Kind, Rate
-from linkwork.core.results.vector_loop import MovingLoop
-from linkwork.writers.charts.columns import lead_of, rate_label, size_label
+from linkwork.writers.charts.chart import lead_of, rate_label, size_label
 
 _MOST_NUMBERED = 5  # quantities with numbers of the motion by default
 

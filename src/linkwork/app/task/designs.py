@@ -23,8 +23,8 @@ from linkwork.core.mechanism.bodies import DiscFigure
 from linkwork.core.mechanism.skeleton import Skeleton
 from linkwork.core.results.motion import Motion
 from linkwork.synthesis.defects.verdicts import JudgedDesign
-from linkwork.synthesis.loops.candidates import Candidates, Drive, LoopKind
 from linkwork.synthesis.loops.driven_loop import pivots_at
+from linkwork.synthesis.loops.limits import Candidates, Drive, LoopKind
 from linkwork.synthesis.poses.burmester import CentrePoints, centre_points
 from linkwork.synthesis.precision.problem import cognates
 from linkwork.synthesis.solvers.motions import poses_of

@@ -26,11 +26,10 @@ from linkwork.core.motion.following import turns_freely
 from linkwork.core.motion.model import Model, leading_input
 from linkwork.core.numerics.block_solver import Block
 from linkwork.core.numerics.branch_tracking import InputPath
-from linkwork.core.numerics.enclosed import excluded
+from linkwork.core.numerics.kantorovich import excluded
 from linkwork.core.numerics.newton import NewtonOptions, nearest_miss, newton
 from linkwork.core.numerics.position_proof import prove, rounding_of_inputs
-from linkwork.core.results.failure import Failure
-from linkwork.core.results.limit import Limit
+from linkwork.core.results.failure import Failure, Limit
 from linkwork.core.results.quantity import Kind
 
 _CLOSED = 1e-10  # scaled residual of a position

@@ -21,9 +21,9 @@ from linkwork.core.motion.limits import kind_of_crossing
 from linkwork.core.motion.model import Model
 from linkwork.core.numerics.block_solver import Block, linearise_block
 from linkwork.core.numerics.branch_tracking import BOLD, InputPath, TrackOptions, follow
-from linkwork.core.numerics.curve_proof import prove_curve
 from linkwork.core.numerics.curve_tracing import Curve, CurveOptions, Leg, trace
 from linkwork.core.numerics.newton import NewtonOptions, nearest_miss, newton
+from linkwork.core.numerics.path_proof import prove_curve
 from linkwork.core.numerics.position_proof import prove_block
 from linkwork.core.numerics.turning_point import turning_points
 from linkwork.core.table.loop_table import LoopTable

@@ -23,11 +23,11 @@ from linkwork.core.mechanism.varied_numbers import VariedNumber, with_numbers
 from linkwork.core.motion.model import Model, model_of
 from linkwork.core.motion.positions import Named, name_series, target_values
 from linkwork.core.numerics.block_solver import Block
+from linkwork.core.numerics.change_point import FoldFamily, locate_fold
 from linkwork.core.numerics.decomposition import JoinedBlocks, closure_of
-from linkwork.core.numerics.fold import FoldFamily, locate_fold
 from linkwork.core.numerics.newton import nearest_miss
 from linkwork.core.results.failure import Remedy
-from linkwork.core.results.nearest_assembly import LinkEnd, NearestAssembly
+from linkwork.core.results.position import LinkEnd, NearestAssembly
 from linkwork.core.table.loop_table import LoopTable
 
 

@@ -19,21 +19,19 @@ from itertools import combinations, pairwise
 import numpy as np
 
 from linkwork.circuits.homotopy.bilinear_homotopy import (
+    PolynomialSystem,
+    Roots,
     closure_phases,
+    distinct_solutions,
     normal_numbers,
     null_space,
+    polish_roots,
 )
 from linkwork.circuits.homotopy.dead_points import (
     DeadPointSystem,
     most_dead_points,
 )
 from linkwork.circuits.homotopy.isolated_roots import RootFamily, isolated_roots
-from linkwork.circuits.homotopy.polynomial_system import (
-    PolynomialSystem,
-    Roots,
-    distinct_solutions,
-    polish_roots,
-)
 from linkwork.core.foundation.arrays import Array, ComplexArray, IndexArray
 from linkwork.core.numerics.bilinear import BilinearSystem, columns_of
 

@@ -21,8 +21,8 @@ from linkwork.core.commands.terminal import (
 )
 from linkwork.core.foundation.errors import InputError
 from linkwork.core.foundation.files import save_text
+from linkwork.core.textfile.keys import schema_of, schema_text
 from linkwork.core.textfile.reader import blank_sheet, examples as example_names
-from linkwork.core.textfile.schema import schema_of, schema_text
 
 # ----------------------------------------------------------------------
 # ``linkwork examples``

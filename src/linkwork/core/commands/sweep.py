@@ -45,12 +45,11 @@ from linkwork.core.commands.terminal import (
     title_lines,
     wrapped,
 )
-from linkwork.core.foundation.arrays import Array
-from linkwork.core.foundation.containers import FrozenDict
+from linkwork.core.foundation.arrays import Array, FrozenDict
 from linkwork.core.foundation.statuses import Status
 from linkwork.core.mechanism.dimensions import Number
 from linkwork.core.motion.solving import solve_round_start
-from linkwork.core.results.listing.motion_listing import (
+from linkwork.core.results.listing import (
     evidence_fields,
     how_many,
     limit_fields,

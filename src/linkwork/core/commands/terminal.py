@@ -28,7 +28,7 @@ from typing import TYPE_CHECKING, Any, NoReturn
 import click
 
 if TYPE_CHECKING:
-    from linkwork.core.results.listing.motion_listing import Column
+    from linkwork.core.results.listing import Column
 
 #: The shell's exit code after SIGINT.
 INTERRUPTED = 128 + 2

@@ -12,17 +12,17 @@ if TYPE_CHECKING:
         SceneOptions as SceneOptions,
         check_forces as check_forces,
     )
-    from linkwork.core.drawing.matplotlib_writer import figure as figure
+    from linkwork.core.drawing.matplotlib_writer import (
+        check_picture as check_picture,
+        figure as figure,
+        render as render,
+        write as write,
+    )
     from linkwork.core.drawing.mechanism_scene import (
         Sheet as Sheet,
         configuration_sheet as configuration_sheet,
         reach_of as reach_of,
         scene_of as scene_of,
-    )
-    from linkwork.core.drawing.picture_file import (
-        check_picture as check_picture,
-        render as render,
-        write as write,
     )
     from linkwork.core.drawing.pose import no_points as no_points
     from linkwork.core.drawing.scene import (

@@ -22,9 +22,8 @@ from linkwork.core.drawing.scene import (
 from linkwork.core.foundation.errors import InputError, UnknownNameError, choices, internal
 from linkwork.core.foundation.values import check_values
 from linkwork.core.results.motion import Motion
-from linkwork.core.results.position import Position
+from linkwork.core.results.position import Position, VectorLoop
 from linkwork.core.results.quantity import Kind, Rate
-from linkwork.core.results.vector_loop import VectorLoop
 
 SCALES = (1.0, 1.5, 2.0, 2.5, 3.0, 4.0, 5.0, 6.0, 8.0)
 

@@ -1,16 +1,14 @@
-"""Scenes as PNG, SVG and PDF, and as Matplotlib figures for notebooks.
-
-Matplotlib is needed only here and for charts, and is imported only for drawing. The object-oriented
-interface is used throughout: no window, no global figure.
-"""
+"""Matplotlib's default settings while a picture is drawn, independent of the user's."""
 
 from __future__ import annotations
 
 import io
 import math
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
 from typing import TYPE_CHECKING, Any, Protocol
 
-from linkwork.core.drawing.matplotlib_settings import house_settings
 from linkwork.core.drawing.mechanism_scene import TALLEST, Sheet
 from linkwork.core.drawing.pose import lines_within
 from linkwork.core.drawing.scene import (
@@ -28,14 +26,40 @@ from linkwork.core.drawing.scene import (
     Theme,
     round_down,
 )
+from linkwork.core.drawing.vector_files import tikz_picture
+from linkwork.core.foundation.errors import InputError, MissingPackageError
+from linkwork.core.foundation.files import as_path, save_bytes, suffix_of
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
 
+@contextmanager
+def house_settings() -> Iterator[None]:
+    """Use Matplotlib's defaults instead of the user's settings."""
+    try:
+        import matplotlib
+    except ImportError as error:
+        raise MissingPackageError("drawing needs Matplotlib: pip install matplotlib") from error
+    with matplotlib.rc_context():
+        matplotlib.rcdefaults()
+        matplotlib.rcParams["svg.hashsalt"] = "linkwork"
+        matplotlib.rcParams["path.simplify"] = False  # files show the coordinates of the scene
+        matplotlib.rcParams["pdf.fonttype"] = 42  # journals reject PDF files with Type 3 fonts
+        matplotlib.rcParams["pgf.rcfonts"] = False  # LaTeX files use the fonts of the document
+        yield
+
+
+# ----------------------------------------------------------------------
+# Scenes as PNG, SVG and PDF, and as Matplotlib figures for notebooks.
+#
+# Matplotlib is needed only here and for charts, and is imported only for drawing. The
+# object-oriented interface is used throughout: no window, no global figure.
+
+
 #: Formats of image files.
-FORMATS = ("png", "svg", "pdf")
+IMAGE_FORMATS = ("png", "svg", "pdf")
 
 _LONG_SIDE = 6.0  # longer side of the drawing [inches]
 _SHORT_SIDE = 2.2  # minimum, so that a flat mechanism has room, ticks and a title
@@ -295,3 +319,72 @@ class Brush:
             parse_math=False,
             **self._common(primitive),
         )
+
+
+# ----------------------------------------------------------------------
+# Pictures as files: PNG, SVG and PDF by Matplotlib, TikZ for LaTeX documents.
+
+
+_TIKZ = "tikz"
+#: File formats by suffix.
+FORMATS = (*IMAGE_FORMATS, _TIKZ)
+
+
+def check_picture(path: str | Path) -> str:
+    """The format of a picture file by its suffix.
+
+    Raises
+    ------
+    InputError
+        If there is no such format.
+    """
+    return suffix_of(as_path(path), "a picture", [f".{name}" for name in FORMATS])[1:]
+
+
+def write(
+    scene: Scene | Chart | Sheet,
+    path: str | Path,
+    *,
+    dpi: float = 200.0,
+    theme: Theme = LIGHT,
+) -> Path:
+    """Write a scene, a chart or a sheet to a file; the suffix of ``path`` chooses the format.
+
+    The file is written completely or not at all; the same scene gives the same bytes.
+
+    Raises
+    ------
+    InputError
+        If the suffix is not a known format, or the file cannot be written.
+    MissingPackageError
+        If Matplotlib is not installed.
+    """
+    target = as_path(path)
+    kind = check_picture(target)
+    save_bytes(render(scene, kind, dpi=dpi, theme=theme), target)
+    return target
+
+
+def render(
+    scene: Scene | Chart | Sheet,
+    kind: str,
+    *,
+    dpi: float = 200.0,
+    theme: Theme = LIGHT,
+) -> bytes:
+    """A scene, chart or sheet as the content of a file of one of :data:`FORMATS`.
+
+    Raises
+    ------
+    InputError
+        If the format is unknown, or several drawings are to be one TikZ picture.
+    """
+    if kind not in FORMATS:
+        raise InputError(f'there is no format "{kind}" (formats: {", ".join(FORMATS)})')
+    if kind != _TIKZ:
+        return image(scene, kind, dpi=dpi, theme=theme)
+    if isinstance(scene, Sheet):
+        raise InputError("a TikZ picture shows one position or a chart: draw each position alone")
+    if isinstance(scene, Scene):
+        return tikz_picture(scene, theme).encode()
+    return scene.tikz(theme).encode()

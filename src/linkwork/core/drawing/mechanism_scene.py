@@ -12,9 +12,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from linkwork.core.drawing.annotations import SceneOptions
-from linkwork.core.drawing.dimensions import Subject, annotation_of
-from linkwork.core.drawing.guides import Track, guide_symbols, track_gaps, tracks
-from linkwork.core.drawing.inputs import input_arrows
+from linkwork.core.drawing.dimensions import Edge, Subject, annotation_of, vector_edges
+from linkwork.core.drawing.guides import Track, guide_symbols, input_arrows, track_gaps, tracks
 from linkwork.core.drawing.labels import Kept, link_names, placed, point_names
 from linkwork.core.drawing.links import (
     coupling_symbols,
@@ -25,7 +24,6 @@ from linkwork.core.drawing.links import (
     stems,
     tones,
 )
-from linkwork.core.drawing.parts import part_symbols, rounds
 from linkwork.core.drawing.paths import (
     Further,
     faint_symbols,
@@ -35,8 +33,7 @@ from linkwork.core.drawing.paths import (
 )
 from linkwork.core.drawing.pose import Pose, inputs_caption, reached_caption
 from linkwork.core.drawing.scene import Box, Measures, Primitive, Role, Scene, xy
-from linkwork.core.drawing.vectors import Edge, vector_edges
-from linkwork.core.drawing.wheels import wheel_symbols
+from linkwork.core.drawing.wheels import part_symbols, rounds, wheel_symbols
 from linkwork.core.foundation.arrays import ComplexArray
 from linkwork.core.foundation.errors import InputError, UnknownNameError, choices
 from linkwork.core.foundation.names import GROUND, as_names

@@ -14,7 +14,6 @@ from linkwork.core.drawing.annotations import Annotation, rate_of, usual_most
 from linkwork.core.drawing.guides import guide_symbols, track_gaps, tracks
 from linkwork.core.drawing.labels import Choice, places_beside
 from linkwork.core.drawing.links import link_symbols, pin_symbols, tones
-from linkwork.core.drawing.parts import part_symbols
 from linkwork.core.drawing.pose import Path, Pose, lead_text, printed_name
 from linkwork.core.drawing.scene import (
     COINCIDENT,
@@ -30,9 +29,9 @@ from linkwork.core.drawing.scene import (
     drawn_text,
     xy,
 )
-from linkwork.core.drawing.wheels import wheel_symbols
+from linkwork.core.drawing.wheels import part_symbols, wheel_symbols
 from linkwork.core.foundation.arrays import Array, ComplexArray, IndexArray
-from linkwork.core.results.limit import LimitKind
+from linkwork.core.results.failure import LimitKind
 from linkwork.core.results.link_motion import Centrodes, InstantCentre
 from linkwork.core.results.motion import Motion
 from linkwork.core.results.quantity import Kind

@@ -11,8 +11,7 @@ from typing import TypeVar
 
 import numpy as np
 
-from linkwork.core.foundation.arrays import ComplexArray
-from linkwork.core.foundation.containers import FrozenDict
+from linkwork.core.foundation.arrays import ComplexArray, FrozenDict
 from linkwork.core.foundation.errors import UnknownNameError, choices, internal
 
 #: A point of the plane in the mechanism's length unit.

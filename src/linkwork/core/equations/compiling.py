@@ -16,16 +16,20 @@ import numpy as np
 
 from linkwork.core.equations.model import FormulaRow, LawEquation, LoopEquations, Term
 from linkwork.core.expression.tree import names_in
-from linkwork.core.foundation.arrays import Array, BoolArray, ComplexArray, IndexArray
+from linkwork.core.foundation.arrays import (
+    UNIT_ROUNDOFF,
+    Array,
+    BoolArray,
+    ComplexArray,
+    IndexArray,
+)
 from linkwork.core.foundation.errors import MechanismError, Problem
 from linkwork.core.foundation.lanes import display_value
 from linkwork.core.foundation.names import canonical
-from linkwork.core.foundation.rounding import UNIT_ROUNDOFF
 from linkwork.core.numerics.bilinear import BilinearSystem
 from linkwork.core.numerics.block_solver import Block, BlockSolver
-from linkwork.core.numerics.branch_tracking import InputPath
+from linkwork.core.numerics.branch_tracking import InputPath, Parametrization
 from linkwork.core.numerics.decomposition import BlockForm, block_form
-from linkwork.core.numerics.local_parametrization import Parametrization
 from linkwork.core.record.block_record import record_of
 from linkwork.core.table.loop_table import LoopTable, TableSplitter
 from linkwork.core.table.rows import LawRow, LinearRows, PhasorRows

@@ -18,16 +18,15 @@ import numpy as np
 
 from linkwork.core.equations.frames import Frames
 from linkwork.core.equations.model import LawEquation, LinearEquation
-from linkwork.core.foundation.arrays import Array
+from linkwork.core.foundation.arrays import RANK_TOLERANCE, Array
 from linkwork.core.foundation.lanes import plain_value
 from linkwork.core.foundation.names import GROUND, canonical
-from linkwork.core.foundation.rounding import RANK_TOLERANCE
 from linkwork.core.numerics.decomposition import BlockForm, block_form
 
 #: ("body", name) or ("point", name)
-Node = tuple[str, str]
-Edge = tuple[Node, Node]
-_ROOT: Node = ("root", "")
+GraphNode = tuple[str, str]
+Edge = tuple[GraphNode, GraphNode]
+_ROOT: GraphNode = ("root", "")
 _LARGE = 60  # nodes of a block above which only one candidate cycle per edge is considered
 
 
@@ -35,9 +34,9 @@ _LARGE = 60  # nodes of a block above which only one candidate cycle per edge is
 class StructureBlock:
     """Bodies and points determined together; ``loops`` as closed walks of nodes."""
 
-    new: tuple[Node, ...]
-    tree: tuple[tuple[Node, Node], ...]
-    loops: tuple[tuple[Node, ...], ...]
+    new: tuple[GraphNode, ...]
+    tree: tuple[tuple[GraphNode, GraphNode], ...]
+    loops: tuple[tuple[GraphNode, ...], ...]
 
 
 @dataclass(frozen=True)
@@ -102,11 +101,11 @@ class _Blocks:
 
     def __init__(self, structure: Structure) -> None:
         self.structure = structure
-        self.neighbours: dict[Node, list[Node]] = {}
+        self.neighbours: dict[GraphNode, list[GraphNode]] = {}
 
     def of(self, form: BlockForm) -> tuple[StructureBlock, ...]:
         incidences = self.structure.incidences
-        known: set[Node] = {("body", self.structure.ground)}
+        known: set[GraphNode] = {("body", self.structure.ground)}
         found: list[StructureBlock] = []
         for equations, _ in form.blocks:
             edges = [
@@ -124,11 +123,11 @@ class _Blocks:
             found.append(block)
         return tuple(found)
 
-    def _block(self, edges: list[Edge], known: set[Node]) -> StructureBlock:
+    def _block(self, edges: list[Edge], known: set[GraphNode]) -> StructureBlock:
         graph = _BlockGraph(edges, known)
         tree = graph.spanning_tree()
         wanted = len(edges) - len(graph.new)
-        loops: list[tuple[Node, ...]] = []
+        loops: list[tuple[GraphNode, ...]] = []
         if wanted > 0:
             candidates = graph.candidates(tree)
             walks = sorted(
@@ -142,9 +141,9 @@ class _Blocks:
                     loops.append(walk)
         return StructureBlock(tuple(graph.new), tuple(tree), tuple(loops))
 
-    def _close_walk(self, cycle: tuple[Edge, ...], known: set[Node]) -> tuple[Node, ...]:
+    def _close_walk(self, cycle: tuple[Edge, ...], known: set[GraphNode]) -> tuple[GraphNode, ...]:
         """The walk around a cycle of block edges, closed through known bodies outside the block."""
-        walk: list[Node] = []
+        walk: list[GraphNode] = []
         steps = _orient_cycle(cycle, known)
         for k, (here, there) in enumerate(steps):
             walk.append(here)
@@ -157,21 +156,21 @@ class _Blocks:
 class _BlockGraph:
     """One block's edges, with all known bodies merged into a root."""
 
-    def __init__(self, edges: list[Edge], known: set[Node]) -> None:
+    def __init__(self, edges: list[Edge], known: set[GraphNode]) -> None:
         self.known = known
         self.new = list(dict.fromkeys(n for edge in edges for n in edge if n not in known))
-        self.at: dict[Node, list[tuple[Node, Edge]]] = {_ROOT: []}
+        self.at: dict[GraphNode, list[tuple[GraphNode, Edge]]] = {_ROOT: []}
         for edge in edges:
             a, b = (self._seen(n) for n in edge)
             self.at.setdefault(a, []).append((b, edge))
             self.at.setdefault(b, []).append((a, edge))
 
-    def _seen(self, node: Node) -> Node:
+    def _seen(self, node: GraphNode) -> GraphNode:
         return _ROOT if node in self.known else node
 
-    def _shortest(self, source: Node) -> dict[Node, tuple[Node, Edge]]:
+    def _shortest(self, source: GraphNode) -> dict[GraphNode, tuple[GraphNode, Edge]]:
         """Breadth-first parents, without the source."""
-        parent: dict[Node, tuple[Node, Edge]] = {}
+        parent: dict[GraphNode, tuple[GraphNode, Edge]] = {}
         queue = deque([source])
         while queue:
             here = queue.popleft()
@@ -181,14 +180,14 @@ class _BlockGraph:
                     queue.append(there)
         return parent
 
-    def spanning_tree(self) -> list[tuple[Node, Node]]:
+    def spanning_tree(self) -> list[tuple[GraphNode, GraphNode]]:
         """(real parent, new node) in the order of discovery from the root."""
         return [
             (edge[0] if edge[1] == node else edge[1], node)
             for node, (_, edge) in self._shortest(_ROOT).items()
         ]
 
-    def candidates(self, tree: list[tuple[Node, Node]]) -> list[tuple[Edge, ...]]:
+    def candidates(self, tree: list[tuple[GraphNode, GraphNode]]) -> list[tuple[Edge, ...]]:
         """Candidate cycles of a minimum basis (Horton 1987), from shortest paths of each node."""
         sources = list(self.at) if len(self.at) <= _LARGE else [_ROOT]
         found: dict[frozenset[Edge], tuple[Edge, ...]] = {}
@@ -209,7 +208,7 @@ class _BlockGraph:
         return list(found.values())
 
 
-def _climb(node: Node, parent: Mapping[Node, tuple[Node, Edge]]) -> list[Edge]:
+def _climb(node: GraphNode, parent: Mapping[GraphNode, tuple[GraphNode, Edge]]) -> list[Edge]:
     """Edges from a node up to the source."""
     edges = []
     while node in parent:
@@ -239,13 +238,13 @@ class _IndependentSet:
         return False
 
 
-def _orient_cycle(cycle: tuple[Edge, ...], known: set[Node]) -> list[Edge]:
+def _orient_cycle(cycle: tuple[Edge, ...], known: set[GraphNode]) -> list[Edge]:
     """The edges of a cycle, oriented so that each leads to the next.
 
     Known nodes count as one: the cycle may enter and leave it at different nodes.
     """
 
-    def place(node: Node) -> Node:
+    def place(node: GraphNode) -> GraphNode:
         return _ROOT if node in known else node
 
     first = cycle[0]
@@ -265,16 +264,21 @@ def _orient_cycle(cycle: tuple[Edge, ...], known: set[Node]) -> list[Edge]:
     return steps
 
 
-def _path(neighbours: Mapping[Node, list[Node]], start: Node, end: Node) -> list[Node]:
+def _path(
+    neighbours: Mapping[GraphNode, list[GraphNode]], start: GraphNode, end: GraphNode
+) -> list[GraphNode]:
     """Shortest path through known nodes, searched from both ends, cheaper end first."""
-    parents: tuple[dict[Node, Node | None], dict[Node, Node | None]] = ({start: None}, {end: None})
-    edge: list[list[Node]] = [[start], [end]]
+    parents: tuple[dict[GraphNode, GraphNode | None], dict[GraphNode, GraphNode | None]] = (
+        {start: None},
+        {end: None},
+    )
+    edge: list[list[GraphNode]] = [[start], [end]]
     while edge[0] and edge[1]:
         # expand the side with fewer edges: ground has very many
         cost = [sum(len(neighbours[n]) for n in side) for side in edge]
         side = 0 if cost[0] <= cost[1] else 1
         mine, other = parents[side], parents[1 - side]
-        following: list[Node] = []
+        following: list[GraphNode] = []
         for here in edge[side]:
             for there in neighbours[here]:
                 if there in mine:
@@ -287,7 +291,7 @@ def _path(neighbours: Mapping[Node, list[Node]], start: Node, end: Node) -> list
     raise AssertionError("the known nodes are connected")
 
 
-def _back(parent: Mapping[Node, Node | None], node: Node) -> list[Node]:
+def _back(parent: Mapping[GraphNode, GraphNode | None], node: GraphNode) -> list[GraphNode]:
     found = [node]
     while (before := parent[found[-1]]) is not None:
         found.append(before)

@@ -8,7 +8,7 @@ from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any, ClassVar, TypeVar
 
-from linkwork.core.foundation.containers import FrozenDict
+from linkwork.core.foundation.arrays import FrozenDict
 from linkwork.core.foundation.lanes import choose, estimated, phase, plain_value, sqrt, vector
 from linkwork.core.foundation.names import GROUND
 from linkwork.core.foundation.precise import (
@@ -19,7 +19,7 @@ from linkwork.core.foundation.precise import (
     sqrt as root_of,
 )
 from linkwork.core.mechanism.dimensions import Number
-from linkwork.core.mechanism.loaded import LoadedBodies
+from linkwork.core.mechanism.machine import LoadedBodies
 
 P = TypeVar("P")
 _HALF_TURN = -math.pi + 1e-12  # [rad]

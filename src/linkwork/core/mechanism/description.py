@@ -12,8 +12,7 @@ import numpy as np
 
 from linkwork.core.expression.grammar import RESERVED, parse
 from linkwork.core.expression.tree import Name
-from linkwork.core.foundation.arrays import Array
-from linkwork.core.foundation.containers import FrozenDict
+from linkwork.core.foundation.arrays import Array, FrozenDict
 from linkwork.core.foundation.errors import (
     ExpressionError,
     InputError,

@@ -9,7 +9,7 @@ from itertools import combinations
 
 import numpy as np
 
-from linkwork.core.foundation.arrays import AnyArray, Array, BoolArray
+from linkwork.core.foundation.arrays import EPSILON, UNIT_ROUNDOFF, AnyArray, Array, BoolArray
 from linkwork.core.foundation.lanes import (
     Lanes,
     Rest,
@@ -29,7 +29,6 @@ from linkwork.core.foundation.lanes import (
 )
 from linkwork.core.foundation.names import GROUND
 from linkwork.core.foundation.precise import Precise, chosen, joined, precise, sin_cos, sqrt
-from linkwork.core.foundation.rounding import EPSILON, UNIT_ROUNDOFF
 from linkwork.core.mechanism.bodies import Bodies, Measured, Shapes
 from linkwork.core.mechanism.description import Problems
 

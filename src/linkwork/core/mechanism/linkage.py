@@ -10,7 +10,7 @@ from functools import cached_property
 from itertools import combinations, pairwise
 from typing import Any, Self
 
-from linkwork.core.foundation.containers import FrozenDict
+from linkwork.core.foundation.arrays import FrozenDict
 from linkwork.core.foundation.errors import ExpressionError, choices, undefined
 from linkwork.core.foundation.lanes import phase
 from linkwork.core.foundation.names import GROUND, canonical
@@ -19,8 +19,7 @@ from linkwork.core.mechanism.description import Key, Problems, check_entries, de
 from linkwork.core.mechanism.dimensions import LARGEST
 from linkwork.core.mechanism.inputs import Input
 from linkwork.core.mechanism.link_shape import link_shapes
-from linkwork.core.mechanism.loaded import check_masses
-from linkwork.core.mechanism.machine import Friction
+from linkwork.core.mechanism.machine import Friction, check_masses
 from linkwork.core.mechanism.part.guides import Slider
 from linkwork.core.mechanism.part.index import PARTS, JoinedBodies
 from linkwork.core.mechanism.part.part import Part, PartChecks, carriers, turning_links
@@ -482,7 +481,7 @@ class Linkage(Draft):
         How far pins can move in their holes, by point: the difference of the radii.
     mass, force, gravity, masses
         Units of masses and forces, gravity, and the masses of links; see
-        :class:`~linkwork.core.mechanism.loaded.LoadedBodies`.
+        :class:`~linkwork.core.mechanism.machine.LoadedBodies`.
     slots, sliders, … : tuples of parts
         One field for each table of parts, see :mod:`linkwork.core.mechanism.part.index`.
     """

@@ -6,12 +6,12 @@ from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from functools import partial
 
-from linkwork.core.foundation.containers import FrozenDict
+from linkwork.core.foundation.arrays import FrozenDict
 from linkwork.core.foundation.errors import choices, undefined
 from linkwork.core.foundation.names import canonical
 from linkwork.core.mechanism.description import Description, Key, Problems, check_entries, declared
 from linkwork.core.mechanism.dimensions import Number
-from linkwork.core.mechanism.loaded import LoadedBodies, check_masses
+from linkwork.core.mechanism.machine import LoadedBodies, check_masses
 from linkwork.core.mechanism.part.springs import Load
 
 
@@ -59,7 +59,7 @@ class Loops(_Equations, LoadedBodies):
         Points drawn as one link; ``ground`` is fixed.
     mass, force, gravity, masses
         Units of masses and forces, gravity, and the masses of links; see
-        :class:`~linkwork.core.mechanism.loaded.LoadedBodies`.
+        :class:`~linkwork.core.mechanism.machine.LoadedBodies`.
     loads : tuple of Load
         Forces on points, torques on links.
     """

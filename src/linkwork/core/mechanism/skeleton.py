@@ -21,7 +21,7 @@ from linkwork.core.mechanism.description import Question
 from linkwork.core.mechanism.dimensions import Number
 from linkwork.core.mechanism.linkage import Draft, Linkage
 from linkwork.core.mechanism.part.guides import Slider, Strut
-from linkwork.core.mechanism.part.weld import RigidJoint
+from linkwork.core.mechanism.part.springs import RigidJoint
 
 
 def directed(linkage: Linkage, angles: Mapping[str, float]) -> Linkage:

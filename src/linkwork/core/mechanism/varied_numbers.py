@@ -7,7 +7,7 @@ from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, replace
 from typing import Any
 
-from linkwork.core.foundation.containers import FrozenDict
+from linkwork.core.foundation.arrays import FrozenDict
 from linkwork.core.foundation.errors import InputError, Problem, UnknownNameError, choices
 from linkwork.core.foundation.names import canonical
 from linkwork.core.foundation.values import Key, Named, NumberValue, Table

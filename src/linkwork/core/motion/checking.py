@@ -7,8 +7,7 @@ from collections.abc import Iterator
 import numpy as np
 
 from linkwork import wings
-from linkwork.core.foundation.arrays import Array
-from linkwork.core.foundation.rounding import RANK_TOLERANCE
+from linkwork.core.foundation.arrays import RANK_TOLERANCE, Array
 from linkwork.core.foundation.statuses import Status
 from linkwork.core.mechanism.linkage import Linkage
 from linkwork.core.mechanism.loops import Loops

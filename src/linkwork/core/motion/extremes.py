@@ -10,10 +10,16 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from linkwork.core.foundation.arrays import Array, BoolArray, ComplexArray, IndexArray
+from linkwork.core.foundation.arrays import (
+    EPSILON,
+    UNIT_ROUNDOFF,
+    Array,
+    BoolArray,
+    ComplexArray,
+    IndexArray,
+)
 from linkwork.core.foundation.errors import InputError
 from linkwork.core.foundation.names import as_names
-from linkwork.core.foundation.rounding import EPSILON, UNIT_ROUNDOFF
 from linkwork.core.foundation.statuses import CONVERGED, Certification, Status
 from linkwork.core.motion.following import Drive
 from linkwork.core.motion.limits import BranchEnd
@@ -22,13 +28,13 @@ from linkwork.core.motion.positions import RowValues
 from linkwork.core.numerics.block_solver import BlockSolver
 from linkwork.core.numerics.branch_tracking import InputPath, Track, rows_on_track
 from linkwork.core.numerics.kantorovich import Expansion, tangent_errors
+from linkwork.core.numerics.newton import Columns, SolvedRows
 from linkwork.core.numerics.path_proof import prove_paths
 from linkwork.core.numerics.position_proof import expansions, prove, reach, rounding_of_inputs
-from linkwork.core.numerics.system import Columns, SolvedRows
-from linkwork.core.results.limit import OutputLimit
+from linkwork.core.results.failure import OutputLimit
 from linkwork.core.results.motion import Motion
 from linkwork.core.results.quantities.definition import Asked, Group
-from linkwork.core.results.quantities.located_rows import columns_of, locate_rows
+from linkwork.core.results.quantities.rows import columns_of, locate_rows
 
 _NEAR = 1e-6  # of the leader: extremes of values alone are known so well
 _AT_ONCE = 1e-12  # of the leader: a quantity and the input that turn back so near turn back at once

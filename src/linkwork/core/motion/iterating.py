@@ -21,9 +21,16 @@ from linkwork.core.motion.positions import Named, name_series, target_values
 from linkwork.core.motion.solving import solve
 from linkwork.core.numerics.newton import NewtonOptions
 from linkwork.core.results.motion import Motion
-from linkwork.core.results.position import Iterate, Iterates, NewtonTrail, Position
+from linkwork.core.results.position import (
+    Iterate,
+    Iterates,
+    MovingLoop,
+    MovingVector,
+    NewtonTrail,
+    Position,
+    VectorLoop,
+)
 from linkwork.core.results.quantity import Kind
-from linkwork.core.results.vector_loop import MovingLoop, MovingVector, VectorLoop
 
 _PULLS = 4  # one is enough where a point runs on a circle or line
 _STEP = 1e-4  # of an unknown, for central differences

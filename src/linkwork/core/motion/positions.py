@@ -13,23 +13,28 @@ import numpy as np
 from linkwork.core.equations.compiling import coordinate_name
 from linkwork.core.expression.derivatives import Jet, evaluate
 from linkwork.core.expression.tree import names_in
-from linkwork.core.foundation.arrays import Array, BoolArray, ComplexArray, IndexArray
-from linkwork.core.foundation.containers import ComputedDict
+from linkwork.core.foundation.arrays import (
+    UNIT_ROUNDOFF,
+    Array,
+    BoolArray,
+    ComplexArray,
+    ComputedDict,
+    IndexArray,
+)
 from linkwork.core.foundation.names import canonical
-from linkwork.core.foundation.rounding import UNIT_ROUNDOFF
 from linkwork.core.foundation.statuses import Certification, Status
 from linkwork.core.motion.model import Model, largest_misfits, leading_input
 from linkwork.core.numerics.block_solver import BlockSolver
 from linkwork.core.numerics.branch_tracking import InputPath, Node, Track, rows_of_nodes
+from linkwork.core.numerics.newton import SolvedRows
 from linkwork.core.numerics.path_proof import prove_path
 from linkwork.core.numerics.position_proof import rounding_of_inputs
-from linkwork.core.numerics.system import SolvedRows
 from linkwork.core.results.failure import Failure
 from linkwork.core.results.position import Certificate, NewtonTrail, Position
 from linkwork.core.results.quantities.definition import Group
 from linkwork.core.results.quantities.registry import row_quantity
 from linkwork.core.results.quantity import Kind
-from linkwork.core.results.series import Series
+from linkwork.core.results.tables import Series
 
 
 class LastAxis:

@@ -32,9 +32,8 @@ from linkwork.core.motion.positions import (
     position_of,
     target_values,
 )
-from linkwork.core.numerics.newton import NewtonOptions, Watch
+from linkwork.core.numerics.newton import NewtonOptions, SolvedRows, Watch
 from linkwork.core.numerics.position_proof import prove, roots_proved, rounding_of_inputs
-from linkwork.core.numerics.system import SolvedRows
 from linkwork.core.results.failure import Failure, Remedy
 from linkwork.core.results.motion import Motion
 from linkwork.core.results.position import Certificate, NewtonStep, NewtonTrail, Position

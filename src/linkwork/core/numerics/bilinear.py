@@ -15,6 +15,8 @@ from itertools import product
 import numpy as np
 
 from linkwork.core.foundation.arrays import (
+    PROOF_SLACK,
+    UNIT_ROUNDOFF,
     Array,
     BoolArray,
     ComplexArray,
@@ -23,7 +25,6 @@ from linkwork.core.foundation.arrays import (
     inverses,
     matrix_vector,
 )
-from linkwork.core.foundation.rounding import PROOF_SLACK, UNIT_ROUNDOFF
 from linkwork.core.numerics.kantorovich import radii
 
 #: For every column of a closure matrix its L coefficients as tuples of weights of free ones.

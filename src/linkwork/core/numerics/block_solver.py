@@ -12,8 +12,7 @@ import numpy as np
 
 from linkwork.core.foundation.arrays import Array, IndexArray, StatusArray, inverses, matrix_vector
 from linkwork.core.foundation.statuses import CONVERGED
-from linkwork.core.numerics.newton import NewtonOptions, Watch, newton
-from linkwork.core.numerics.system import Recorded, SolvedRows, System
+from linkwork.core.numerics.newton import NewtonOptions, Recorded, SolvedRows, System, Watch, newton
 
 FEW = 24  # rows that floats solve, one after the other, as fast as arrays all together
 LARGE = 1e3  # condition up to which balanced columns are not tried

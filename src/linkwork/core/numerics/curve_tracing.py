@@ -10,26 +10,23 @@ from functools import cached_property
 
 import numpy as np
 
-from linkwork.core.foundation.arrays import Array
-from linkwork.core.foundation.rounding import EPSILON, LARGEST_POLISH
+from linkwork.core.foundation.arrays import EPSILON, LARGEST_POLISH, Array
 from linkwork.core.foundation.statuses import CONVERGED, CircuitEnd
 from linkwork.core.foundation.units import FULL_TURN
 from linkwork.core.numerics.branch_tracking import (
     BOLD,
     End,
     Node,
+    Parametrization,
+    Parametrizations,
     TrackOptions,
+    fastest_leader,
     follow,
     follow_with_proof,
     node_at,
-)
-from linkwork.core.numerics.change_point import Crossing, locate_change_point
-from linkwork.core.numerics.local_parametrization import (
-    Parametrization,
-    Parametrizations,
-    fastest_leader,
     same_position,
 )
+from linkwork.core.numerics.change_point import Crossing, locate_change_point
 from linkwork.core.numerics.newton import sharp
 
 _STILL = 8.0 * EPSILON  # relative: a variable that moves less over a step rests, to rounding

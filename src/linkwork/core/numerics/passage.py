@@ -16,8 +16,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from linkwork.core.foundation.arrays import Array, IndexArray
-from linkwork.core.foundation.rounding import CLOSER_TANGENT
+from linkwork.core.foundation.arrays import CLOSER_TANGENT, Array, IndexArray
 from linkwork.core.foundation.statuses import CONVERGED
 from linkwork.core.numerics.block_solver import Block, BlockSolver
 from linkwork.core.numerics.branch_tracking import InputPath, Node, follow, node_at

@@ -14,8 +14,7 @@ from typing import Any
 
 import numpy as np
 
-from linkwork.core.foundation.arrays import Array, BoolArray, IndexArray
-from linkwork.core.foundation.rounding import UNIT_ROUNDOFF
+from linkwork.core.foundation.arrays import UNIT_ROUNDOFF, Array, BoolArray, IndexArray
 from linkwork.core.numerics.block_solver import (
     FEW,
     Block,
@@ -23,9 +22,8 @@ from linkwork.core.numerics.block_solver import (
     Linearised,
     linearise_block,
 )
-from linkwork.core.numerics.enclosed import Enclosed
-from linkwork.core.numerics.kantorovich import Expansion, Radii, expansion
-from linkwork.core.numerics.system import UNKNOWN, Columns, Recorded
+from linkwork.core.numerics.kantorovich import Enclosed, Expansion, Radii, expansion
+from linkwork.core.numerics.newton import UNKNOWN, Columns, Recorded
 
 
 @dataclass(frozen=True, eq=False)

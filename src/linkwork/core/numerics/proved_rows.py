@@ -13,13 +13,11 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from linkwork.core.foundation.arrays import Array, BoolArray, CountArray, IndexArray
-from linkwork.core.foundation.rounding import UNIT_ROUNDOFF
+from linkwork.core.foundation.arrays import UNIT_ROUNDOFF, Array, BoolArray, CountArray, IndexArray
 from linkwork.core.foundation.statuses import CONVERGED, Certification
 from linkwork.core.numerics.block_solver import FEW, BlockSolver
 from linkwork.core.numerics.branch_tracking import InputPath, Node, interpolate, rows_of_nodes
-from linkwork.core.numerics.newton import NewtonOptions, unlimited
-from linkwork.core.numerics.system import BlockFunctions, SolvedRows
+from linkwork.core.numerics.newton import BlockFunctions, NewtonOptions, SolvedRows, unlimited
 
 _WIDER = 1.0 + 8.0 * UNIT_ROUNDOFF  # covers the rounding of a difference
 

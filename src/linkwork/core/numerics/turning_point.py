@@ -21,22 +21,29 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from linkwork.core.foundation.arrays import Array, matrix_vector
-from linkwork.core.foundation.rounding import EPSILON, PROOF_SLACK, UNIT_ROUNDOFF
+from linkwork.core.foundation.arrays import (
+    EPSILON,
+    PROOF_SLACK,
+    UNIT_ROUNDOFF,
+    Array,
+    matrix_vector,
+)
 from linkwork.core.foundation.statuses import CircuitEnd
 from linkwork.core.numerics.block_solver import Block, BlockSolver, Linearised
 from linkwork.core.numerics.branch_tracking import (
     BOLD,
     InputPath,
     Node,
+    Parametrization,
+    Parametrizations,
     TrackOptions,
     Watch,
+    fastest_leader,
     follow,
     follow_with_proof,
     node_at,
     predict,
 )
-from linkwork.core.numerics.curve_proof import legs_are_proved, prove_curve
 from linkwork.core.numerics.curve_tracing import (
     Curve,
     CurveOptions,
@@ -45,13 +52,8 @@ from linkwork.core.numerics.curve_tracing import (
     sign_change,
     trace,
 )
-from linkwork.core.numerics.enclosed import Enclosed
-from linkwork.core.numerics.kantorovich import Expansion
-from linkwork.core.numerics.local_parametrization import (
-    Parametrization,
-    Parametrizations,
-    fastest_leader,
-)
+from linkwork.core.numerics.kantorovich import Enclosed, Expansion
+from linkwork.core.numerics.path_proof import legs_are_proved, prove_curve
 from linkwork.core.numerics.position_proof import expansions, prove, reach
 
 _ROOM = 4.0  # times the error of the rate: how far apart the ends of the interval are taken

@@ -1,6 +1,6 @@
 """The proof of a position and of the step to it as recorded arithmetic, block by block.
 
-The constants are those of :mod:`linkwork.core.table.curvature` and of the Newton-Kantorovich
+The constants are those of :mod:`linkwork.core.table.loop_table` and of the Newton-Kantorovich
 theorem as in ``numerics.proof.kantorovich``, in the usual weights: Y, Z, ω and r± row by row for
 every value that the known variables may have. Bounds of rounding are coarser where that costs
 nothing that matters.
@@ -12,7 +12,7 @@ from collections.abc import Callable, Mapping, Sequence
 from copy import copy
 from dataclasses import dataclass
 
-from linkwork.core.foundation.rounding import PRINTED_ANGLE, PROOF_SLACK, UNIT_ROUNDOFF
+from linkwork.core.foundation.arrays import PRINTED_ANGLE, PROOF_SLACK, UNIT_ROUNDOFF
 from linkwork.core.record.closure import Closure, Phase, solve_linear
 from linkwork.core.record.recorder import Recorder, Value
 

@@ -17,7 +17,7 @@ from typing import Any
 
 import numpy as np
 
-from linkwork.core.foundation.rounding import FAR, SMALLEST_RATIO
+from linkwork.core.foundation.arrays import FAR, SMALLEST_RATIO
 from linkwork.core.foundation.statuses import Status
 from linkwork.core.record.block_proof import BlockProof
 from linkwork.core.record.closure import (
@@ -29,7 +29,7 @@ from linkwork.core.record.closure import (
     solve_linear,
     weighted_norm,
 )
-from linkwork.core.record.python_text import ARRAYS, FLOATS, Form, KeptCode, Statements, local_name
+from linkwork.core.record.printing import ARRAYS, FLOATS, Form, KeptCode, Statements, local_name
 from linkwork.core.record.recorder import Op, Recorder, Value
 from linkwork.core.table.loop_table import LoopTable
 from linkwork.core.table.rows import LawRow

@@ -15,21 +15,21 @@ if TYPE_CHECKING:
         Inversion as Inversion,
         LoopType as LoopType,
     )
-    from linkwork.core.results.failure import Failure as Failure, Remedy as Remedy
-    from linkwork.core.results.limit import (
+    from linkwork.core.results.failure import (
+        Failure as Failure,
         Limit as Limit,
         LimitKind as LimitKind,
         OutputLimit as OutputLimit,
+        Remedy as Remedy,
     )
-    from linkwork.core.results.nearest_assembly import NearestAssembly as NearestAssembly
     from linkwork.core.results.position import (
         Certificate as Certificate,
         Iterate as Iterate,
         Iterates as Iterates,
+        NearestAssembly as NearestAssembly,
         NewtonStep as NewtonStep,
         NewtonTrail as NewtonTrail,
     )
-    from linkwork.core.results.series import Series as Series
-    from linkwork.core.results.tables import Table as Table
+    from linkwork.core.results.tables import Series as Series, Table as Table
 else:
     __getattr__ = loader(__name__)

@@ -13,26 +13,25 @@ import numpy as np
 
 from linkwork import wings
 from linkwork.core.expression.derivatives import Jet
-from linkwork.core.foundation.arrays import Array, BoolArray, ComplexArray, CountArray
-from linkwork.core.foundation.containers import FrozenDict, read_only
+from linkwork.core.foundation.arrays import (
+    EQUAL_ROWS,
+    Array,
+    BoolArray,
+    ComplexArray,
+    CountArray,
+    FrozenDict,
+    read_only,
+)
 from linkwork.core.foundation.errors import UnknownNameError, choices, internal
 from linkwork.core.foundation.names import as_name, find_spelling
-from linkwork.core.foundation.rounding import EQUAL_ROWS
 from linkwork.core.foundation.statuses import Certification, CircuitEnd, Status
 from linkwork.core.mechanism.skeleton import Skeleton
-from linkwork.core.results.failure import Failure
-from linkwork.core.results.limit import Limit, LimitKind, OutputLimit
+from linkwork.core.results.failure import Failure, Limit, LimitKind, OutputLimit
 from linkwork.core.results.quantities.definition import Asked, AskedOfMotion, Group
-from linkwork.core.results.quantities.located_rows import (
-    Between,
-    LocatedRows,
-    columns_of,
-    locate_rows,
-)
 from linkwork.core.results.quantities.registry import EVIDENCE, Quantities
+from linkwork.core.results.quantities.rows import Between, LocatedRows, columns_of, locate_rows
 from linkwork.core.results.quantity import Rate, Units
-from linkwork.core.results.series import Series
-from linkwork.core.results.tables import Column, Summary, Table
+from linkwork.core.results.tables import Column, Series, Summary, Table
 
 # long: more than half are the descriptions and examples of public methods.
 

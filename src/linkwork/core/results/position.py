@@ -1,4 +1,4 @@
-"""One solved position, with its evidence."""
+"""The position nearest to closure, with the gap and the ends of links that do not meet."""
 
 from __future__ import annotations
 
@@ -10,17 +10,74 @@ import numpy as np
 
 from linkwork import wings
 from linkwork.core.expression.derivatives import Jet
-from linkwork.core.foundation.arrays import Array
-from linkwork.core.foundation.containers import FrozenDict, read_only
+from linkwork.core.foundation.arrays import Array, ComplexArray, FrozenDict, read_only
 from linkwork.core.foundation.errors import internal
 from linkwork.core.foundation.statuses import Certification, Status
 from linkwork.core.mechanism.skeleton import Skeleton
 from linkwork.core.results.failure import Failure
-from linkwork.core.results.nearest_assembly import LinkEnd
 from linkwork.core.results.quantities.definition import Group
 from linkwork.core.results.quantities.registry import EVIDENCE, Quantities
 from linkwork.core.results.quantity import Units
 from linkwork.core.results.tables import Summary, driven_text
+
+
+@dataclass(frozen=True, kw_only=True)
+class LinkEnd:
+    """An end of a link that does not reach its joint.
+
+    Parameters
+    ----------
+    link, point : str
+        The link, and the joint.
+    joint, end : (x, y)
+        The positions of the joint and of the link's end [length].
+    """
+
+    link: str
+    point: str
+    joint: tuple[float, float]
+    end: tuple[float, float]
+
+
+@internal("skeleton", "units", "apart")
+@dataclass(frozen=True, kw_only=True)
+class NearestAssembly:
+    """The least-squares position: the smallest closure error found near the guess.
+
+    Parameters
+    ----------
+    input, unknowns : Mapping[str, float]
+        File units.
+    points : Mapping[str, (x, y)]
+        Coordinates of every point, each reached from ground by one way around its loop.
+    gaps : Mapping[str, (x, y)]
+        The closure error of every loop as a vector [length]; zero where it closes.
+    gap : float
+        Root of the sum of their squares [length].
+    apart : tuple of LinkEnd
+        Ends of links that do not reach their joint (points-and-links mechanisms).
+
+    Examples
+    --------
+    >>> import linkwork as lw
+    >>> short = lw.example("four-bar").with_dimensions({"A B": 20})
+    >>> round(lw.circuits.nearest_assembly(short, at=180).gap, 1)  # mm
+    40.0
+    """
+
+    mechanism: str
+    units: Units
+    skeleton: Skeleton
+    input: Mapping[str, float]
+    unknowns: Mapping[str, float]
+    points: Mapping[str, tuple[float, float]]
+    gaps: Mapping[str, tuple[float, float]] = FrozenDict()
+    gap: float
+    apart: tuple[LinkEnd, ...] = ()
+
+
+# ----------------------------------------------------------------------
+# One solved position, with its evidence.
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -423,3 +480,71 @@ class Iterates:
 
     position: Position
     iterates: tuple[Iterate, ...]
+
+
+# ----------------------------------------------------------------------
+# The loop equations of a position or a motion as vectors, for vector diagrams.
+
+
+@dataclass(frozen=True, kw_only=True)
+class LoopVector:
+    """One term of a loop equation at one position.
+
+    Parameters
+    ----------
+    name : str
+        Its name in the equation, in polar form: ``a2∠θ12``.
+    value : complex
+        The value of the term: x + iy, in the mechanism's length unit.
+    backwards : bool
+        Whether the equation subtracts the named vector: the arrow then points against ``value``.
+    """
+
+    name: str
+    value: complex
+    backwards: bool = False
+
+
+@dataclass(frozen=True, kw_only=True)
+class VectorLoop:
+    """A loop equation at one position: both sides lead from one place to another.
+
+    ``label`` is the loop's name in the file, or the points it passes.
+    """
+
+    label: str
+    left: tuple[LoopVector, ...]
+    right: tuple[LoopVector, ...]
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class MovingVector:
+    """One term of a loop equation over the rows of a motion: ``values`` (N,), NaN where there is no
+    position; else as :class:`LoopVector`.
+    """
+
+    name: str
+    values: ComplexArray
+    backwards: bool = False
+
+    def at(self, row: int) -> LoopVector:
+        """The vector in a row."""
+        value = complex(self.values[row])
+        return LoopVector(name=self.name, value=value, backwards=self.backwards)
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class MovingLoop:
+    """A loop equation over the rows of a motion."""
+
+    label: str
+    left: tuple[MovingVector, ...]
+    right: tuple[MovingVector, ...]
+
+    def at(self, row: int) -> VectorLoop:
+        """The loop in a row."""
+        return VectorLoop(
+            label=self.label,
+            left=tuple(vector.at(row) for vector in self.left),
+            right=tuple(vector.at(row) for vector in self.right),
+        )

@@ -13,8 +13,14 @@ from typing import Protocol, runtime_checkable
 
 import numpy as np
 
-from linkwork.core.foundation.arrays import Array, ComplexArray, IndexArray, tall_product
-from linkwork.core.foundation.rounding import EXTENDED_EPSILON, UNIT_ROUNDOFF
+from linkwork.core.foundation.arrays import (
+    EXTENDED_EPSILON,
+    UNIT_ROUNDOFF,
+    Array,
+    ComplexArray,
+    IndexArray,
+    tall_product,
+)
 
 # ----------------------------------------------------------------------
 # Rows of phasor terms, the one shape of every planar closure equation and point.

@@ -7,6 +7,11 @@ from typing import TYPE_CHECKING
 from linkwork.core.foundation.loading import loader
 
 if TYPE_CHECKING:
+    from linkwork.core.textfile.keys import (
+        json_schema as json_schema,
+        schema_of as schema_of,
+        schema_text as schema_text,
+    )
     from linkwork.core.textfile.link import (
         fragment_of as fragment_of,
         is_link as is_link,
@@ -20,14 +25,9 @@ if TYPE_CHECKING:
         read_file as read_file,
         read_text as read_text,
     )
-    from linkwork.core.textfile.schema import (
-        json_schema as json_schema,
-        schema_of as schema_of,
-        schema_text as schema_text,
-    )
-    from linkwork.core.textfile.text_edits import TextEdits as TextEdits
     from linkwork.core.textfile.toml_text import Lines as Lines, bytes_of as bytes_of
     from linkwork.core.textfile.writer import (
+        TextEdits as TextEdits,
         part_lines as part_lines,
         save as save,
         write_text as write_text,

@@ -21,23 +21,24 @@ from linkwork.core.foundation.names import GROUND
 from linkwork.core.mechanism.description import Description
 from linkwork.core.mechanism.dimensions import Numbers
 from linkwork.core.mechanism.linkage import Linkage
-from linkwork.core.mechanism.loaded import LoadedBodies
 from linkwork.core.mechanism.loops import Loops
+from linkwork.core.mechanism.machine import LoadedBodies
 from linkwork.core.motion.positions import RowValues
 from linkwork.core.results.quantity import Kind
 from linkwork.design.derivatives.rows import DifferentiatedRows
 from linkwork.design.derivatives.tape import Tape
-from linkwork.forces.reactions.applied import AppliedLoads
-from linkwork.forces.reactions.bodies import (
+from linkwork.forces.reactions.drives import (
+    effort_name,
     free_bodies,
     free_bodies_of,
     known_acts,
     read_bodies,
+    read_first_links,
     set_down,
+    work_terms,
 )
-from linkwork.forces.reactions.drives import effort_name, read_first_links, work_terms
 from linkwork.forces.reactions.free_bodies import Act, FreeBodies
-from linkwork.forces.reactions.geometry import Geometry
+from linkwork.forces.reactions.geometry import AppliedLoads, Geometry
 from linkwork.forces.reactions.parts import apply_load, join_loads, line_of
 from linkwork.forces.reactions.system import NO_WORK, joint_forces, totals
 

@@ -13,7 +13,7 @@ from typing import Any, NoReturn, cast
 import numpy as np
 
 from linkwork.core.expression.values import least, most
-from linkwork.core.foundation.arrays import AnyArray, Array, BoolArray
+from linkwork.core.foundation.arrays import RANK_TOLERANCE, AnyArray, Array, BoolArray
 from linkwork.core.foundation.lanes import (
     Consensus,
     Lanes,
@@ -22,7 +22,6 @@ from linkwork.core.foundation.lanes import (
     remainders,
     with_parts,
 )
-from linkwork.core.foundation.rounding import RANK_TOLERANCE
 
 #: a and b for one argument; ``None`` if b is 0.
 Partial = tuple[Any, Any]

@@ -26,8 +26,8 @@ from linkwork.core.mechanism.part.guides import Cylinder
 from linkwork.core.mechanism.part.index import PARTS
 from linkwork.core.mechanism.part.springs import Load
 from linkwork.core.textfile.keys import LOOPS, form_of
-from linkwork.core.textfile.text_edits import TextEdits
 from linkwork.core.textfile.toml_text import data_of
+from linkwork.core.textfile.writer import TextEdits
 
 Path = tuple[str | int, ...]
 

@@ -23,8 +23,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from linkwork.core.foundation.arrays import Array, BoolArray, IndexArray
-from linkwork.core.foundation.rounding import UNIT_ROUNDOFF
+from linkwork.core.foundation.arrays import UNIT_ROUNDOFF, Array, BoolArray, IndexArray
 from linkwork.core.record.block_proof import BlockProof
 from linkwork.core.record.closure import BlockPart, Closure, solve_linear, weight_of
 from linkwork.core.record.recorder import (

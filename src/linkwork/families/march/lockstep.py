@@ -13,7 +13,6 @@ import numpy as np
 
 from linkwork.core.foundation.arrays import Array, BoolArray
 from linkwork.core.record.recorder import LANES, ROLES
-from linkwork.families.compiled.code_cache import say_that_it_compiles
 from linkwork.families.compiled.compiling import (
     compiled_for,
     inlined,
@@ -21,6 +20,7 @@ from linkwork.families.compiled.compiling import (
     njit_no_refcount,
     numbers,
     prefetch,
+    say_that_it_compiles,
     truths,
     types,
 )

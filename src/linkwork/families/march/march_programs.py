@@ -1,28 +1,18 @@
-"""The programs of one topology: predict, solve block by block, prove or judge the step.
+"""Programs that compute rates, condition and residual at positions, and prove these.
 
-A lane keeps five positions: the trial (role 0) and the last four nodes (roles 1 to 4). Registers
-by name, one number per lane each; ``.s`` is a role:
+Block by block, as in ``numerics.block_solver``:  J x' = -F_u u',  J x'' = -D²F[(x', u'), (x', u')]
+with the rates of all variables that a block knows. Registers by name:
 
-``t.s``                   the value of the path
-``x<k>.s`` ``d<k>.s``     unknowns, and their derivatives by t
-``e<k>.s``                how far the true position may be from there
-``side<b>.s``             det J of a block
-``u<j>.origin`` ``.rate`` inputs are u = origin + rate t
-``u<j>.spread``           how far the inputs of a row may be from those, besides their rounding
-``a1`` … ``b4``           weights of the nodes' unknowns and derivatives in the prediction
-``scale<k>``              weights of variables that are lengths
-
-and registers of the trial that keep their places when roles move on:
-
-``u<j>.0``                inputs; phasors of phases that only inputs turn
-``live<b>.0``             1.0 where block b still iterates
-``step<b>.0`` ``begin<b>.0``  weighted size of the latest and of the first correction
-``y<k>.0``                how far the true position may get from the trial on the way to it
-``radius.0``              the largest error of the trial, weighted
-``good.0``                1.0 where the step may be taken
-
-When the trial has become the last node, roles move on by one: nothing is copied, the same program
-is run with its registers renamed (:meth:`MarchPrograms.turned`).
+``v<k>``             variables, the inputs after the unknowns
+``u<j>.rate``        rate of an input by the leading one
+``scale<k>``         weights of variables that are lengths
+``length``           scale of the residuals of equations of lengths
+``first<k>`` ``second<k>``  derivatives of the unknowns by the leading input
+``condition``        the largest ‖J‖·‖J⁻¹‖ of all blocks, weighted, in the largest norm
+``residual``         the largest residual of all equations, scaled
+``u<j>.spread``      how far an input may be from its true value, besides its rounding
+``radius`` ``unique``  a position lies within the first, no other one within the second, weighted;
+                     both NaN where that is not proved
 """
 
 from __future__ import annotations
@@ -32,13 +22,14 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from linkwork.core.foundation.arrays import Array, IndexArray
-from linkwork.core.foundation.rounding import UNIT_ROUNDOFF
+from linkwork.core.foundation.arrays import UNIT_ROUNDOFF, Array, IndexArray
 from linkwork.core.record.block_proof import BlockProof
 from linkwork.core.record.closure import (
     BlockPart,
     Closure,
     Phase,
+    add_rates,
+    condition_of,
     cosine_and_sine,
     driven,
     phasor_name,
@@ -56,6 +47,123 @@ from linkwork.core.record.recorder import (
     reserve,
 )
 from linkwork.core.table.loop_table import LoopTable
+
+Number = Value | float
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class PlaceProgram:
+    """A program that computes ``wanted`` named registers from a position."""
+
+    program: Program
+    registers: Registers
+    wanted: tuple[str, ...]
+
+
+class PlaceWriter:
+    """Writes programs that compute quantities of a position.
+
+    Parameters
+    ----------
+    table : LoopTable
+        Without function rows.
+    parts : sequence of BlockPart
+        Blocks in the order in which they are solved.
+    zeros : set of str
+        Names of coefficients that are zero in every design.
+    """
+
+    def __init__(
+        self, table: LoopTable, parts: Sequence[BlockPart], zeros: Set[str] = frozenset()
+    ) -> None:
+        self.table, self.n = table, table.unknowns
+        self.rec = rec = Recorder()
+        variables = [rec.input(f"v{k}") for k in range(table.variables)]
+        self.closures = [Closure(table, part, rec, variables, zeros) for part in parts]
+
+    def finish(self, wanted: Sequence[str]) -> PlaceProgram:
+        """The program, which computes these registers."""
+        registers = Registers()
+        reserve(self.rec, registers)
+        program = lower_program(self.rec, registers, registers.count)
+        return PlaceProgram(program=program, registers=registers, wanted=tuple(wanted))
+
+    def derivatives(self) -> tuple[Mapping[int, Number], Mapping[int, Number]]:
+        """Both derivatives of all variables by the leading input."""
+        inputs = range(self.table.variables - self.n)
+        alone = len(inputs) == 1  # a single input leads
+        first: dict[int, Number] = {
+            self.n + j: 1.0 if alone else self.rec.input(f"u{j}.rate") for j in inputs
+        }
+        second: dict[int, Number] = {self.n + j: 0.0 for j in inputs}
+        for closure in self.closures:
+            add_rates(closure, first, second)
+        return first, second
+
+    def rates(self) -> list[str]:
+        """Write the first derivatives of all unknowns, then the second ones; the registers."""
+        written = {
+            f"{name}{k}": by_variable[k]
+            for name, by_variable in zip(("first", "second"), self.derivatives(), strict=True)
+            for k in range(self.n)
+        }
+        for name, value in written.items():
+            self.rec.write(name, value)
+        return list(written)
+
+    def condition(self, lengths: Set[int]) -> list[str]:
+        """The largest condition; ``lengths``: the linear rows that are equations of lengths."""
+        rec = self.rec
+        found = [condition_of(c, self._scales(c, lengths))[0] for c in self.closures]
+        rec.write("condition", rec.largest([1.0, *found]))
+        return ["condition"]
+
+    def residual(self, lengths: Set[int]) -> list[str]:
+        """The largest residual, scaled."""
+        rec = self.rec
+        residuals = [rec.constant(0.0)]
+        for closure in self.closures:
+            residuals += [
+                rec.divide(rec.absolute(f), scale)
+                for f, scale in zip(closure.residual(), self._scales(closure, lengths), strict=True)
+            ]
+        rec.write("residual", rec.largest(residuals))
+        return ["residual"]
+
+    def _scales(self, closure: Closure, lengths: Set[int]) -> list[Number]:
+        """Of the residuals of a block."""
+        length = self.rec.input("length")
+        lines = [length if r in lengths else 1.0 for r in closure.lines]
+        return [*[length] * (2 * len(closure.loops)), *lines]
+
+
+# ----------------------------------------------------------------------
+# The programs of one topology: predict, solve block by block, prove or judge the step.
+#
+# A lane keeps five positions: the trial (role 0) and the last four nodes (roles 1 to 4). Registers
+# by name, one number per lane each; ``.s`` is a role:
+#
+# ``t.s``                   the value of the path
+# ``x<k>.s`` ``d<k>.s``     unknowns, and their derivatives by t
+# ``e<k>.s``                how far the true position may be from there
+# ``side<b>.s``             det J of a block
+# ``u<j>.origin`` ``.rate`` inputs are u = origin + rate t
+# ``u<j>.spread``           how far the inputs of a row may be from those, besides their rounding
+# ``a1`` … ``b4``           weights of the nodes' unknowns and derivatives in the prediction
+# ``scale<k>``              weights of variables that are lengths
+#
+# and registers of the trial that keep their places when roles move on:
+#
+# ``u<j>.0``                inputs; phasors of phases that only inputs turn
+# ``live<b>.0``             1.0 where block b still iterates
+# ``step<b>.0`` ``begin<b>.0``  weighted size of the latest and of the first correction
+# ``y<k>.0``                how far the true position may get from the trial on the way to it
+# ``radius.0``              the largest error of the trial, weighted
+# ``good.0``                1.0 where the step may be taken
+#
+# When the trial has become the last node, roles move on by one: nothing is copied, the same program
+# is run with its registers renamed (:meth:`MarchPrograms.turned`).
+
 
 STEPS = 6  # of Newton-Raphson for one block of a trial
 START_STEPS = 50  # of Newton-Raphson for one block, from a guess

@@ -14,15 +14,13 @@ if TYPE_CHECKING:
     )
     from linkwork.families.study.running import Progress as Progress, run_study as run_study
     from linkwork.families.study.store import (
+        OutputSummary as OutputSummary,
+        Summary as Summary,
         Verification as Verification,
         chunks_with_record as chunks_with_record,
+        summary_of as summary_of,
         verify_store as verify_store,
     )
     from linkwork.families.study.study import Study as Study
-    from linkwork.families.study.summary import (
-        OutputSummary as OutputSummary,
-        Summary as Summary,
-        summary_of as summary_of,
-    )
 else:
     __getattr__ = loader(__name__)

@@ -1,4 +1,4 @@
-"""All tables and keys of a study plan, for the reader and for the JSON Schema."""
+"""The keys of the file that describes a study."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from functools import partial
 from pathlib import Path
 from typing import Any, TypeVar
 
-from linkwork.core.foundation.containers import FrozenDict
+from linkwork.core.foundation.arrays import FrozenDict
 from linkwork.core.foundation.errors import (
     InputError,
     MechanismError,
@@ -20,25 +20,38 @@ from linkwork.core.foundation.errors import (
 )
 from linkwork.core.foundation.files import as_path
 from linkwork.core.foundation.names import find_spelling
+from linkwork.core.foundation.values import (
+    Constant,
+    Flag,
+    Key,
+    ListOf,
+    Named,
+    NumberValue,
+    PlainNumber,
+    Several,
+    Table,
+    Text,
+    Whole,
+)
 from linkwork.core.mechanism.description import Description, Problems
 from linkwork.core.mechanism.varied_numbers import number_named
 from linkwork.core.motion.model import Model
 from linkwork.core.motion.solving import as_described
 from linkwork.core.results.quantities.registry import Call
+from linkwork.core.textfile.keys import FORMAT, Form
 from linkwork.core.textfile.reader import (
     ReadFile,
+    Structure,
     check_format,
     example_text,
     examples,
     located_error,
     read_text,
 )
-from linkwork.core.textfile.structure import Structure
 from linkwork.core.textfile.toml_text import Lines, bytes_of, data_of, text_of
 from linkwork.families.family import family_of
 from linkwork.families.family_motion import FamilyMotion
 from linkwork.families.sampling import Plan
-from linkwork.families.study.plan_keys import PLAN
 from linkwork.families.study.store import LEDGER, METADATA
 from linkwork.families.study.study import (
     DESIGN,
@@ -54,6 +67,103 @@ from linkwork.families.study.study import (
     usual_chunk,
     values_between,
 )
+
+SAMPLINGS = ("grid", "random", "latin-hypercube", "table")
+
+
+_SPREAD = Several(
+    ListOf(PlainNumber(), "value", 1),
+    Table(
+        (
+            Key("from", PlainNumber(), "The smallest value"),
+            Key("to", PlainNumber(), "The largest value"),
+            Key("levels", Whole(1, 10**9), "In a grid: number of equidistant values"),
+            Key("likeliest", PlainNumber(), "For a triangular distribution: the most likely value"),
+            Key("mean", PlainNumber(), "For a normal distribution: its mean"),
+            Key("deviation", PlainNumber(), "For a normal distribution: its standard deviation"),
+        )
+    ),
+    "a number, a list of numbers, or a table such as { from = 36, to = 44 }",
+)
+
+
+_INPUT = (
+    Key("from", NumberValue(), "First input value, in the mechanism's unit"),
+    Key("to", NumberValue(), "Last input value"),
+    Key("step", NumberValue(), "Step between input values"),
+)
+
+
+PLAN = Form(
+    "study-plan",
+    "Many designs of one mechanism: varied numbers, stored results and filters",
+    "",
+    (
+        Key(
+            "format",
+            Constant(FORMAT),
+            "The version of this file format; write format = 1",
+            required=True,
+        ),
+        Key("name", Text(), "Name of the study"),
+        Key(
+            "mechanism",
+            Text(),
+            'The mechanism: a name of the library, "four-bar", or a file next to the plan, '
+            '"mine.toml"',
+            required=True,
+        ),
+        Key(
+            "sampling",
+            Text(SAMPLINGS),
+            "How designs are chosen: every combination, random, Latin hypercube, or as "
+            "listed in a table",
+            required=True,
+        ),
+        Key("count", Whole(1, 10**15), "Number of designs"),
+        Key("seed", Whole(0), "Seed of the random numbers: the same seed gives the same designs"),
+        Key("table", Text(), "A CSV file next to the plan: one design in each row"),
+        Key("columns", ListOf(Text(), "column", 1), "The varied columns; default all"),
+        Key(
+            "certify",
+            Flag(),
+            "Whether every position is proved; default true, false is faster",
+        ),
+        Key(
+            "device",
+            Text(("cpu", "gpu")),
+            "The device: processor or graphics card; their results agree to rounding",
+        ),
+        Key("chunk", Whole(1), "Number of designs computed and stored together"),
+        Key(
+            "keep",
+            ListOf(Text(), "quantity", 1),
+            'Quantities stored at every row: ["B.x", "rocker"]',
+        ),
+        Key(
+            "dimensions",
+            Named(_SPREAD, 0),
+            "Varied numbers of the mechanism, with values or distribution",
+        ),
+        Key("input", Table(_INPUT), "Range that replaces that of the mechanism's table"),
+        Key(
+            "reductions",
+            Named(Text(), 0),
+            'One number per design: swing = "stroke(rocker)"; min, max, mean or stroke',
+        ),
+        Key(
+            "filters",
+            Named(Text(), 0),
+            'Conditions on a design: "whole cycle", "no dead point", "certified", '
+            'or a comparison such as "mu >= 40"',
+        ),
+    ),
+)
+
+
+# ----------------------------------------------------------------------
+# All tables and keys of a study plan, for the reader and for the JSON Schema.
+
 
 # ----------------------------------------------------------------------
 # Read study plans; report all problems with their lines.

@@ -14,20 +14,23 @@ from itertools import pairwise
 import numpy as np
 
 from linkwork.circuits.branches import TracedCurve, trace_with_proof
-from linkwork.core.foundation.arrays import Array
+from linkwork.core.foundation.arrays import EPSILON, Array
 from linkwork.core.foundation.errors import InputError
-from linkwork.core.foundation.rounding import EPSILON
 from linkwork.core.foundation.statuses import CONVERGED, Certification, ChangePointPolicy, Status
 from linkwork.core.foundation.units import FULL_TURN
 from linkwork.core.motion.following import Drive
 from linkwork.core.motion.model import Model
 from linkwork.core.motion.positions import unproved
 from linkwork.core.numerics.block_solver import BlockSolver
-from linkwork.core.numerics.branch_tracking import Track, rows_on_track
+from linkwork.core.numerics.branch_tracking import (
+    Parametrizations,
+    Track,
+    rows_on_track,
+    whole_turns,
+)
 from linkwork.core.numerics.curve_tracing import Leg as TracedLeg
-from linkwork.core.numerics.local_parametrization import Parametrizations, whole_turns
+from linkwork.core.numerics.newton import SolvedRows
 from linkwork.core.numerics.position_proof import prove
-from linkwork.core.numerics.system import SolvedRows
 
 _POINTS = 10  # of a polynomial
 _SINGULAR = 100.0  # condition beyond which a position is taken from its polynomial

@@ -27,7 +27,7 @@ from linkwork.forces.dynamics.simulated import (
     straight_or_stop,
 )
 from linkwork.forces.dynamics.simulation import start_of
-from linkwork.forces.reactions.applied import AppliedLoads
+from linkwork.forces.reactions.geometry import AppliedLoads
 from linkwork.forces.results import Equilibrium
 
 _STARTS, _LARGEST_GRID = 5, 125  # for each input, fewer if all together were more

@@ -12,14 +12,13 @@ from linkwork.core.foundation.arrays import Array, BoolArray, ComplexArray, Inde
 from linkwork.core.foundation.errors import InputError
 from linkwork.core.foundation.statuses import CONVERGED, Certification, Status
 from linkwork.core.motion.model import Model
+from linkwork.core.numerics.newton import SolvedRows
 from linkwork.core.numerics.position_proof import prove
-from linkwork.core.numerics.system import SolvedRows
 from linkwork.core.table.rows import Piecewise
 from linkwork.forces.dynamics.curve import with_proofs
 from linkwork.forces.dynamics.reduction import Reduction
-from linkwork.forces.reactions.applied import AppliedLoads
 from linkwork.forces.reactions.drives import efforts
-from linkwork.forces.reactions.geometry import Geometry
+from linkwork.forces.reactions.geometry import AppliedLoads, Geometry
 
 _ROUNDING = 1e-12  # of the whole time: a law that ends there does not end before
 

@@ -16,13 +16,13 @@ import numpy as np
 from linkwork.core.foundation.arrays import Array, BoolArray, IndexArray
 from linkwork.core.foundation.errors import InputError
 from linkwork.core.mechanism.linkage import Linkage
-from linkwork.core.numerics.system import SolvedRows
+from linkwork.core.numerics.newton import SolvedRows
 from linkwork.forces.dynamics.collocation import Panels, fit_panels
 from linkwork.forces.dynamics.reduction import Reduction
-from linkwork.forces.reactions.applied import AppliedLoads
 from linkwork.forces.reactions.coupling import Coupling, Sided, Size
 from linkwork.forces.reactions.drives import drive_inputs, join_pins
 from linkwork.forces.reactions.free_bodies import Act, FreeBodies, balance
+from linkwork.forces.reactions.geometry import AppliedLoads
 from linkwork.forces.reactions.parts import join_parts
 from linkwork.forces.reactions.system import doubtful_followers
 

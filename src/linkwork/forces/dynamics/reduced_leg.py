@@ -12,13 +12,12 @@ import numpy as np
 
 from linkwork.core.foundation.arrays import Array
 from linkwork.core.mechanism.part.springs import Spring
-from linkwork.core.numerics.system import SolvedRows
+from linkwork.core.numerics.newton import SolvedRows
 from linkwork.forces.dynamics.collocation import Panels, fit_panels
 from linkwork.forces.dynamics.curve import Leg
 from linkwork.forces.dynamics.joint_friction import JointFriction, Rubbing
 from linkwork.forces.dynamics.reduction import FAR, NEAR, Reduction, State
-from linkwork.forces.reactions.applied import AppliedLoads, virtual_work
-from linkwork.forces.reactions.geometry import Geometry
+from linkwork.forces.reactions.geometry import AppliedLoads, Geometry, virtual_work
 
 _LOOKS, _POLE = 257, 1e6  # places at which formulas are tried; times their usual value
 _ZOOMS, _ZOOM = 13, 17  # rounds down to rounding, and the places of each

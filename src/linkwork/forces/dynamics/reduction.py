@@ -11,20 +11,18 @@ import numpy as np
 
 from linkwork.core.expression.grammar import parse
 from linkwork.core.expression.tree import Binary, Node, names_in
-from linkwork.core.foundation.arrays import Array
-from linkwork.core.foundation.containers import FrozenDict
+from linkwork.core.foundation.arrays import Array, FrozenDict
 from linkwork.core.foundation.errors import KeyWords, key_text
 from linkwork.core.foundation.units import force_of_inertia
 from linkwork.core.mechanism.linkage import Linkage
-from linkwork.core.mechanism.loaded import LoadedBodies
+from linkwork.core.mechanism.machine import LoadedBodies
 from linkwork.core.mechanism.part.springs import Spring
 from linkwork.core.motion.model import Model
 from linkwork.core.motion.positions import RowValues
 from linkwork.core.results.quantity import Rate
-from linkwork.forces.dynamics.piecewise import motors_of
-from linkwork.forces.reactions.applied import AppliedLoads, load_formulas
+from linkwork.forces.dynamics.collocation import motors_of
 from linkwork.forces.reactions.free_bodies import FreeBodies
-from linkwork.forces.reactions.geometry import Geometry
+from linkwork.forces.reactions.geometry import AppliedLoads, Geometry, load_formulas
 from linkwork.forces.reactions.parts import apply_load, join_loads
 from linkwork.forces.reactions.switches import held_switches, load_switches, switch_margins
 

@@ -12,9 +12,8 @@ from linkwork.core.foundation.names import canonical
 from linkwork.core.foundation.statuses import ChangePointPolicy
 from linkwork.core.mechanism.dimensions import Number
 from linkwork.core.mechanism.inputs import speed_per_second
-from linkwork.core.mechanism.loaded import LoadedBodies
-from linkwork.core.motion.model import Model
-from linkwork.core.motion.stop_quantities import bounded_quantity
+from linkwork.core.mechanism.machine import LoadedBodies
+from linkwork.core.motion.model import Model, bounded_quantity
 from linkwork.forces.dynamics.events import Bound
 
 _MASSLESS = 1e-12  # of the largest eigenvalue of the matrix of masses: none

@@ -12,17 +12,22 @@ from typing import Any
 
 import numpy as np
 
-from linkwork.core.foundation.arrays import Array, BoolArray, ComplexArray, inverses, matrix_vector
+from linkwork.core.foundation.arrays import (
+    RANK_TOLERANCE,
+    Array,
+    BoolArray,
+    ComplexArray,
+    inverses,
+    matrix_vector,
+)
 from linkwork.core.foundation.names import GROUND
-from linkwork.core.foundation.rounding import RANK_TOLERANCE
 from linkwork.core.mechanism.dimensions import Number
 from linkwork.core.mechanism.linkage import Linkage
 from linkwork.core.mechanism.machine import Friction
 from linkwork.core.mechanism.part.part import Part, carriers
 from linkwork.core.results.quantity import Kind
-from linkwork.forces.reactions.applied import AppliedLoads
 from linkwork.forces.reactions.coupling import Size
-from linkwork.forces.reactions.geometry import Geometry
+from linkwork.forces.reactions.geometry import AppliedLoads, Geometry
 
 
 @dataclass(frozen=True)

@@ -17,13 +17,11 @@ from linkwork.core.mechanism.part.guides import Cylinder, Slider, Slot
 from linkwork.core.mechanism.part.index import open_room
 from linkwork.core.mechanism.part.part import Part
 from linkwork.core.mechanism.part.rolling import Rolling
-from linkwork.core.mechanism.part.springs import Load, Spring
-from linkwork.core.mechanism.part.weld import Weld
+from linkwork.core.mechanism.part.springs import Load, Spring, Weld
 from linkwork.core.results.quantity import Kind
-from linkwork.forces.reactions.applied import AppliedLoads
 from linkwork.forces.reactions.coupling import LargerOf, Sided, Size
 from linkwork.forces.reactions.free_bodies import Act, FreeBodies, Holder, Reading
-from linkwork.forces.reactions.geometry import Geometry
+from linkwork.forces.reactions.geometry import AppliedLoads, Geometry
 
 # ----------------------------------------------------------------------
 # Reactions of parts, by their kinds.

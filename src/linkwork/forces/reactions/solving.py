@@ -10,14 +10,13 @@ from weakref import WeakKeyDictionary
 
 import numpy as np
 
-from linkwork.circuits.configuration_list import solve_configuration
+from linkwork.circuits.circuit_list import solve_configuration
 from linkwork.core import motion
 from linkwork.core.equations.input_motion import TIME
 from linkwork.core.expression.derivatives import Jet
 from linkwork.core.expression.grammar import CONSTANTS, parse
 from linkwork.core.expression.tree import names_in
-from linkwork.core.foundation.arrays import Array
-from linkwork.core.foundation.containers import ComputedDict
+from linkwork.core.foundation.arrays import Array, ComputedDict
 from linkwork.core.foundation.errors import (
     InputError,
     KeyWords,
@@ -27,19 +26,18 @@ from linkwork.core.foundation.errors import (
     key_text,
 )
 from linkwork.core.foundation.values import check_class
+from linkwork.core.motion.branch_rows import between_rows
 from linkwork.core.motion.higher_rates import check_own_motion, model_in_time
 from linkwork.core.motion.model import Model
 from linkwork.core.motion.positions import RowValues
-from linkwork.core.motion.rows_between import between_rows
 from linkwork.core.results.motion import Motion
 from linkwork.core.results.position import Position
 from linkwork.core.results.quantities.definition import UNKNOWN, MechanismNames, RowQuantity, Solved
 from linkwork.core.results.quantity import Kind
-from linkwork.forces.reactions.applied import load_formulas
+from linkwork.forces.reactions.geometry import load_formulas
 from linkwork.forces.reactions.switches import beside_switches
 from linkwork.forces.reactions.system import ForceRows, solve_forces
-from linkwork.forces.results import ForceStatus, Reactions
-from linkwork.forces.stall import Stall
+from linkwork.forces.results import ForceStatus, Reactions, Stall
 
 
 def force_quantities(model: Model) -> tuple[RowQuantity, ...]:

@@ -11,17 +11,15 @@ import numpy as np
 from linkwork.core.expression.derivatives import Jet
 from linkwork.core.expression.grammar import parse
 from linkwork.core.expression.tree import Binary, Node, names_in, switches_in
-from linkwork.core.foundation.arrays import Array, BoolArray
-from linkwork.core.foundation.containers import FrozenDict
+from linkwork.core.foundation.arrays import Array, BoolArray, FrozenDict
 from linkwork.core.foundation.names import GROUND
 from linkwork.core.mechanism.description import Description
-from linkwork.core.mechanism.loaded import LoadedBodies
+from linkwork.core.mechanism.machine import LoadedBodies
 from linkwork.core.motion.model import Model
 from linkwork.core.results.quantities.definition import Solved
 from linkwork.core.results.quantity import Kind
-from linkwork.forces.reactions.applied import AppliedLoads, load_formulas
 from linkwork.forces.reactions.free_bodies import Act, FreeBodies
-from linkwork.forces.reactions.geometry import Geometry
+from linkwork.forces.reactions.geometry import AppliedLoads, Geometry, load_formulas
 from linkwork.forces.reactions.parts import line_of
 
 # ----------------------------------------------------------------------

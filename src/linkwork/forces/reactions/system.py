@@ -8,26 +8,26 @@ from functools import cached_property
 
 import numpy as np
 
-from linkwork.core.foundation.arrays import Array, BoolArray, ComplexArray, StatusArray
-from linkwork.core.foundation.containers import FrozenDict
+from linkwork.core.foundation.arrays import Array, BoolArray, ComplexArray, FrozenDict, StatusArray
 from linkwork.core.mechanism.linkage import Linkage
-from linkwork.core.mechanism.loaded import LoadedBodies
 from linkwork.core.mechanism.loops import Loops
+from linkwork.core.mechanism.machine import LoadedBodies
 from linkwork.core.motion.model import Model
 from linkwork.core.results.quantities.definition import Solved
 from linkwork.core.results.quantity import Kind
-from linkwork.forces.reactions.applied import AppliedLoads
-from linkwork.forces.reactions.bodies import free_bodies, known_acts, read_bodies
 from linkwork.forces.reactions.coupling import Coupling
 from linkwork.forces.reactions.drives import (
     effort_kind,
     effort_name,
     efforts,
     energies,
+    free_bodies,
+    known_acts,
+    read_bodies,
     read_first_links,
 )
 from linkwork.forces.reactions.free_bodies import Act, Balance, FreeBodies, Reading, balance
-from linkwork.forces.reactions.geometry import Geometry
+from linkwork.forces.reactions.geometry import AppliedLoads, Geometry
 from linkwork.forces.reactions.parts import apply_load
 from linkwork.forces.reactions.switches import stop_efforts, stop_values, undetermined_stops
 from linkwork.forces.results import ForceStatus

@@ -11,7 +11,7 @@ import numpy as np
 from linkwork.circuits.arcs import is_regular
 from linkwork.circuits.assembling import Assemblies, positions_at
 from linkwork.circuits.branches import CurveBranch
-from linkwork.circuits.followed_circuit import FollowedCircuit, explorer_of, straight_way
+from linkwork.circuits.circuit_sweep import FollowedCircuit, explorer_of, straight_way
 from linkwork.core.foundation.arrays import Array, ComplexArray
 from linkwork.core.foundation.errors import InputError
 from linkwork.core.foundation.statuses import Completeness
@@ -19,7 +19,7 @@ from linkwork.core.foundation.units import within_half_a_turn
 from linkwork.core.motion.following import Drive
 from linkwork.core.motion.model import Model
 from linkwork.core.motion.solving import first_position
-from linkwork.core.numerics.local_parametrization import coincide, same_position
+from linkwork.core.numerics.branch_tracking import coincide, same_position
 from linkwork.core.numerics.newton import NewtonOptions
 from linkwork.synthesis.defects.verdicts import Defect, DefectKind
 

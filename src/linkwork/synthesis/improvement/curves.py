@@ -14,10 +14,9 @@ from typing import Any, ClassVar, Self
 
 import numpy as np
 
-from linkwork.core.foundation.arrays import Array, ComplexArray, IndexArray
+from linkwork.core.foundation.arrays import EQUAL_ROWS, Array, ComplexArray, IndexArray
 from linkwork.core.foundation.errors import InputError, UnknownNameError, choices
 from linkwork.core.foundation.names import find_spelling
-from linkwork.core.foundation.rounding import EQUAL_ROWS
 from linkwork.core.foundation.units import FULL_TURN, arc_in_order
 from linkwork.core.motion.model import Model
 from linkwork.core.results.motion import Motion

@@ -23,17 +23,24 @@ from linkwork.core.foundation.arrays import Array, IndexArray
 from linkwork.core.foundation.errors import LinkworkError, MechanismError, Problem
 from linkwork.core.foundation.loading import cores, share_out
 from linkwork.core.mechanism.varied_numbers import VariedNumber, with_numbers
+from linkwork.core.motion.branch_rows import between_rows
 from linkwork.core.motion.model import Model, model_of
-from linkwork.core.motion.rows_between import between_rows
 from linkwork.core.motion.sweeping import sweep
 from linkwork.core.results.motion import Motion
 from linkwork.synthesis.improvement.curves import row_inputs
 from linkwork.synthesis.improvement.goals import Misses, NumberMisses, PathGoal, goal_of
-from linkwork.synthesis.improvement.kept_relations import Together
 from linkwork.synthesis.improvement.lanes import DesignWriter, SolvedLanes, inputs_away
-from linkwork.synthesis.improvement.settings import Aid, Goal
-from linkwork.synthesis.lane_least_squares import Box, LaneFit, Residuals, starts_of
-from linkwork.synthesis.lane_problems import POWERS, LaneProblem, Multipliers, largest_misses
+from linkwork.synthesis.improvement.settings import Aid, Goal, Together
+from linkwork.synthesis.lane_least_squares import (
+    POWERS,
+    Box,
+    LaneFit,
+    LaneProblem,
+    Multipliers,
+    Residuals,
+    largest_misses,
+    starts_of,
+)
 
 _STIFF = 10.0  # weight of limits, in spans of their objectives: their shifts converge faster
 _EQUAL = 1e-12  # relative: numbers of motions that differ less are equal

@@ -14,9 +14,15 @@ import numpy as np
 from linkwork.core.expression.derivatives import Jet, evaluate
 from linkwork.core.expression.grammar import CONSTANTS, parse
 from linkwork.core.expression.tree import Node, names_in
-from linkwork.core.foundation.arrays import AnyArray, Array, BoolArray, ComplexArray, IndexArray
+from linkwork.core.foundation.arrays import (
+    EQUAL_ROWS,
+    AnyArray,
+    Array,
+    BoolArray,
+    ComplexArray,
+    IndexArray,
+)
 from linkwork.core.foundation.errors import InputError, UnknownNameError
-from linkwork.core.foundation.rounding import EQUAL_ROWS
 from linkwork.core.foundation.units import FULL_TURN
 from linkwork.core.motion.model import Model
 from linkwork.core.results.motion import Motion
@@ -25,10 +31,10 @@ from linkwork.core.results.quantities.registry import MOTION_QUANTITIES
 from linkwork.core.results.quantities.rows import TRANSMISSION_ANGLE
 from linkwork.core.results.quantity import Kind
 from linkwork.design.sensitivities import LIMITS
-from linkwork.families.located_extremes import interpolated_extremes, parts_of, step_of
+from linkwork.families.located import interpolated_extremes, parts_of, step_of
 from linkwork.synthesis.improvement.lanes import LanePositions
 from linkwork.synthesis.improvement.settings import Goal
-from linkwork.synthesis.lane_problems import Multipliers
+from linkwork.synthesis.lane_least_squares import Multipliers
 
 _SAFE = 1.5  # fifth differences are known at some rows only
 _NEWTON = 3  # steps to an extreme of the quartic from that of the parabola

@@ -28,22 +28,24 @@ from linkwork.synthesis.improvement.fit_problem import (
     misses_before,
 )
 from linkwork.synthesis.improvement.fronts import fit_front, front_designs
-from linkwork.synthesis.improvement.kept_relations import (
-    STARTS,
-    Together,
-    kept_relations,
-    spread_starts,
-)
 from linkwork.synthesis.improvement.lanes import DesignWriter
 from linkwork.synthesis.improvement.proved_design import (
     ImprovedDesign,
     fitted_design,
     interrupted_design,
+    least_in_rows,
 )
-from linkwork.synthesis.improvement.settings import Aid, Goal, Improvement, Points
-from linkwork.synthesis.improvement.whole_motion import least_in_rows
-from linkwork.synthesis.lane_least_squares import Box
-from linkwork.synthesis.lane_problems import Progress, part_of
+from linkwork.synthesis.improvement.settings import (
+    STARTS,
+    Aid,
+    Goal,
+    Improvement,
+    Points,
+    Together,
+    kept_relations,
+    spread_starts,
+)
+from linkwork.synthesis.lane_least_squares import Box, Progress, part_of
 
 __all__ = [
     "FACTOR",

@@ -13,6 +13,7 @@ import numpy as np
 from linkwork.core.equations.compiling import phasor_rows
 from linkwork.core.expression.derivatives import Jet
 from linkwork.core.foundation.arrays import (
+    EQUAL_ROWS,
     AnyArray,
     Array,
     BoolArray,
@@ -20,7 +21,6 @@ from linkwork.core.foundation.arrays import (
     inverses,
     solutions,
 )
-from linkwork.core.foundation.rounding import EQUAL_ROWS
 from linkwork.core.foundation.units import FULL_TURN
 from linkwork.core.mechanism.varied_numbers import VariedNumber, with_numbers
 from linkwork.core.motion.model import Model, leading_input

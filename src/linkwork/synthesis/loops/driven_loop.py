@@ -8,8 +8,15 @@ import numpy as np
 
 from linkwork.core.foundation.arrays import Array, BoolArray, ComplexArray, IndexArray
 from linkwork.core.foundation.units import FULL_TURN
-from linkwork.synthesis.loops.candidates import Candidates, Drive, Side
-from linkwork.synthesis.loops.limits import DrivenLoops, cross, dot, meeting
+from linkwork.synthesis.loops.limits import (
+    Candidates,
+    Drive,
+    DrivenLoops,
+    Side,
+    cross,
+    dot,
+    meeting,
+)
 
 
 def pivots_at(

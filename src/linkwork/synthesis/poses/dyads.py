@@ -9,20 +9,18 @@ from itertools import combinations
 import numpy as np
 
 from linkwork.core.foundation.arrays import (
-    AnyArray,
-    Array,
-    BoolArray,
-    ComplexArray,
-    IndexArray,
-    StatusArray,
-)
-from linkwork.core.foundation.rounding import (
     ALMOST_REAL,
     EPSILON,
     EXTENDED_EPSILON,
     PROOF_SLACK,
     RANK_TOLERANCE,
     UNIT_ROUNDOFF,
+    AnyArray,
+    Array,
+    BoolArray,
+    ComplexArray,
+    IndexArray,
+    StatusArray,
 )
 from linkwork.core.foundation.statuses import CodedEnum
 

@@ -16,6 +16,7 @@ from typing import Any
 
 import numpy as np
 
+from linkwork.circuits.homotopy.bilinear_homotopy import distinct_solutions
 from linkwork.circuits.homotopy.monodromy import Member, solve_and_confirm
 from linkwork.circuits.homotopy.path_tracking import (
     ParameterPath,
@@ -24,14 +25,11 @@ from linkwork.circuits.homotopy.path_tracking import (
     as_batch,
     relative_size,
 )
-from linkwork.circuits.homotopy.polynomial_system import distinct_solutions
 from linkwork.core.foundation.arrays import ComplexArray, solutions
 from linkwork.core.foundation.files import cache_folder, keep_arrays
-from linkwork.synthesis.loops.candidates import Candidates
-from linkwork.synthesis.precision.position_equations import HeldValue
-from linkwork.synthesis.precision.positions import PrecisionPositions
+from linkwork.synthesis.loops.limits import Candidates
+from linkwork.synthesis.precision.positions import HeldValue, PrecisionPositions, prove_linkages
 from linkwork.synthesis.precision.problem import CONDITIONS, PLACES, PrecisionProblem, exchange_legs
-from linkwork.synthesis.precision.proofs import prove_linkages
 from linkwork.synthesis.precision.solving import (
     PrecisionFourBars,
     SparingTracker,

@@ -10,9 +10,9 @@ from pathlib import Path
 
 import numpy as np
 
+from linkwork.core.foundation.arrays import EQUAL_ROWS
 from linkwork.core.foundation.errors import InputError, MechanismError, choices
 from linkwork.core.foundation.names import GROUND
-from linkwork.core.foundation.rounding import EQUAL_ROWS
 from linkwork.core.mechanism.description import Description
 from linkwork.core.mechanism.linkage import Draft
 from linkwork.core.mechanism.varied_numbers import VariedNumber, number_named
@@ -31,10 +31,8 @@ from linkwork.synthesis.improvement.improving import (
     numbers_to_vary,
     transmission_goals,
 )
-from linkwork.synthesis.improvement.kept_relations import STARTS
-from linkwork.synthesis.improvement.proved_design import ImprovedDesign
-from linkwork.synthesis.improvement.settings import Goal, Improvement, Points, Problems
-from linkwork.synthesis.improvement.whole_motion import Reach
+from linkwork.synthesis.improvement.proved_design import ImprovedDesign, Reach
+from linkwork.synthesis.improvement.settings import STARTS, Goal, Improvement, Points, Problems
 from linkwork.synthesis.solvers.swept_design import SweptDesign
 from linkwork.synthesis.tasks.conditions import Wishes, outside_range
 from linkwork.synthesis.tasks.task import Task

@@ -9,21 +9,23 @@ from itertools import chain, islice
 
 import numpy as np
 
-from linkwork.core.foundation.arrays import Array, ComplexArray
+from linkwork.core.foundation.arrays import EPSILON, Array, ComplexArray
 from linkwork.core.foundation.errors import MechanismError
-from linkwork.core.foundation.rounding import EPSILON
 from linkwork.core.foundation.statuses import Completeness
-from linkwork.synthesis.loops.candidates import GUIDED, Candidates, Drive, LoopKind
+from linkwork.synthesis.loops.limits import GUIDED, Candidates, Drive, LoopKind
 from linkwork.synthesis.poses.burmester import (
     CentrePoints,
+    DyadSet,
+    PoseSet,
     centre_points,
     dyads_with_pivots,
+    pair_dyads,
+    pair_guides,
     sampled_dyads,
     sliding_dyad,
 )
-from linkwork.synthesis.poses.dyad_set import DyadSet, PoseSet, pair_dyads, pair_guides
 from linkwork.synthesis.poses.dyads import FIVE, Refusal, solve_five_poses
-from linkwork.synthesis.poses.pose_families import (
+from linkwork.synthesis.poses.guiding_linkage import (
     drawn_within,
     inverted,
     is_tolerant,

@@ -24,8 +24,8 @@ from linkwork.synthesis.defects.verdicts import (
     defects_of,
     judge,
 )
-from linkwork.synthesis.loops.candidates import Candidates, Drive
-from linkwork.synthesis.poses.dyad_set import DyadSet
+from linkwork.synthesis.loops.limits import Candidates, Drive
+from linkwork.synthesis.poses.burmester import DyadSet
 from linkwork.synthesis.poses.guiding_linkage import Design, linkage_of
 from linkwork.synthesis.tasks.conditions import Wishes
 from linkwork.synthesis.tasks.task import Task

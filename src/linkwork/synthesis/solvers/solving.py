@@ -11,27 +11,21 @@ from typing import NamedTuple, TypeVar
 
 import numpy as np
 
-from linkwork.core.foundation.arrays import Array
+from linkwork.core.foundation.arrays import EQUAL_ROWS, Array
 from linkwork.core.foundation.errors import MechanismError
-from linkwork.core.foundation.rounding import EQUAL_ROWS
 from linkwork.core.foundation.statuses import Completeness
 from linkwork.core.foundation.values import check_flags
-from linkwork.core.results.listing.motion_listing import rounded_down
+from linkwork.core.results.listing import rounded_down
 from linkwork.synthesis.defects.verdicts import DefectKind, JudgedDesign, Verdicts, judge
 from linkwork.synthesis.improvement.settings import FITS, Improvement
-from linkwork.synthesis.loops.candidates import Candidates, Drive
 from linkwork.synthesis.loops.driven_loop import Range
+from linkwork.synthesis.loops.limits import Candidates, Drive
 from linkwork.synthesis.poses.dyads import Refusal
 from linkwork.synthesis.precision.problem import cognates, exchange_legs
-from linkwork.synthesis.solvers.curves import is_closed, solve_curve, usual_longest
-from linkwork.synthesis.solvers.function_synthesis import (
-    USUAL_RATIO,
-    has_usual_ratio,
-    solve_function,
-)
+from linkwork.synthesis.solvers.functions import USUAL_RATIO, has_usual_ratio, solve_function
 from linkwork.synthesis.solvers.improvement import improve_mechanism
 from linkwork.synthesis.solvers.motions import solve_motion
-from linkwork.synthesis.solvers.paths import solve_path
+from linkwork.synthesis.solvers.paths import is_closed, solve_curve, solve_path, usual_longest
 from linkwork.synthesis.solvers.result import (
     Dyad,
     Solutions,

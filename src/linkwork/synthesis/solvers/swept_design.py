@@ -17,7 +17,7 @@ from linkwork.core.foundation.names import GROUND
 from linkwork.core.foundation.values import told_beside
 from linkwork.core.mechanism.description import Description
 from linkwork.core.mechanism.linkage import Draft
-from linkwork.core.results.limit import LimitKind
+from linkwork.core.results.failure import LimitKind
 from linkwork.core.results.motion import Motion, branch_end
 from linkwork.core.results.quantities.rows import TRANSMISSION_ANGLE
 from linkwork.synthesis.defects.verdicts import (
@@ -28,8 +28,7 @@ from linkwork.synthesis.defects.verdicts import (
     order_message,
     tolerance_message,
 )
-from linkwork.synthesis.improvement.proved_design import ImprovedDesign
-from linkwork.synthesis.improvement.whole_motion import least_in_rows
+from linkwork.synthesis.improvement.proved_design import ImprovedDesign, least_in_rows
 from linkwork.synthesis.tasks.conditions import (
     EQUAL_LENGTHS,
     Wishes,

@@ -10,19 +10,17 @@ from itertools import combinations
 
 import numpy as np
 
-from linkwork.core.foundation.arrays import Array, ComplexArray, IndexArray
+from linkwork.core.foundation.arrays import UNIT_ROUNDOFF, Array, ComplexArray, IndexArray
 from linkwork.core.foundation.names import GROUND
-from linkwork.core.foundation.rounding import UNIT_ROUNDOFF
 from linkwork.core.foundation.statuses import Completeness
 from linkwork.core.foundation.units import FULL_TURN
 from linkwork.core.mechanism.inputs import Input
 from linkwork.core.mechanism.linkage import Linkage
 from linkwork.synthesis.defects.verdicts import Defect, DefectKind
 from linkwork.synthesis.improvement.proved_design import ImprovedDesign, proved_design
-from linkwork.synthesis.loops.candidates import Candidates, Drive, LoopKind
 from linkwork.synthesis.loops.driven_loop import NOWHERE, Travel, travel_of
-from linkwork.synthesis.loops.limits import driven_loops
-from linkwork.synthesis.six_bars.watt import PAIRS, WattSixBars, watt_six_bars
+from linkwork.synthesis.loops.limits import Candidates, Drive, LoopKind, driven_loops
+from linkwork.synthesis.six_bars import PAIRS, WattSixBars, watt_six_bars
 from linkwork.synthesis.solvers.result import SolvedTask
 from linkwork.synthesis.solvers.swept_design import SweptDesign
 from linkwork.synthesis.tasks.conditions import Wishes

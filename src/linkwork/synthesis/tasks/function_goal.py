@@ -20,9 +20,8 @@ from linkwork.core.expression.tree import (
     text,
 )
 from linkwork.core.expression.values import OF_ANGLE, TO_ANGLE, value
-from linkwork.core.foundation.arrays import Array
+from linkwork.core.foundation.arrays import EPSILON, EQUAL_ROWS, Array
 from linkwork.core.foundation.errors import ExpressionError
-from linkwork.core.foundation.rounding import EPSILON, EQUAL_ROWS
 from linkwork.core.foundation.units import FULL_TURN, AngleUnit
 from linkwork.core.foundation.values import as_told
 from linkwork.synthesis.improvement.settings import Problems

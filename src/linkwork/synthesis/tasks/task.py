@@ -10,15 +10,16 @@ from pathlib import Path
 
 import numpy as np
 
+from linkwork.core.foundation.arrays import EQUAL_ROWS
 from linkwork.core.foundation.errors import MechanismError, Problem
-from linkwork.core.foundation.rounding import EQUAL_ROWS
 from linkwork.core.foundation.units import AngleUnit, arc_in_order
 from linkwork.core.foundation.values import as_told
 from linkwork.core.results.quantities.rows import TRANSMISSION_ANGLE
 from linkwork.synthesis.improvement.settings import Improvement, Problems
-from linkwork.synthesis.loops.candidates import GUIDED
+from linkwork.synthesis.loops.limits import GUIDED
 from linkwork.synthesis.tasks.conditions import (
     LENGTHS,
+    Curve,
     Given,
     PrecisionPosition,
     Ranking,
@@ -28,7 +29,6 @@ from linkwork.synthesis.tasks.conditions import (
     repeated_inputs,
     repeated_points,
 )
-from linkwork.synthesis.tasks.curve_file import Curve
 from linkwork.synthesis.tasks.function_goal import ExactPairs, FunctionGoal
 from linkwork.synthesis.tasks.task_keys import KINDS
 

@@ -18,18 +18,25 @@ from linkwork.core.mechanism.description import Description
 from linkwork.core.results.quantities.rows import TRANSMISSION_ANGLE
 from linkwork.core.textfile.keys import FORMAT
 from linkwork.core.textfile.reader import (
+    Structure,
     check_format,
     check_kind,
     example_text,
     examples,
     located_error,
 )
-from linkwork.core.textfile.structure import Structure
 from linkwork.core.textfile.toml_text import Lines, bytes_of, data_of, text_of
 from linkwork.core.textfile.writer import write_tables
 from linkwork.synthesis.improvement.settings import Goal, Improvement
-from linkwork.synthesis.tasks.conditions import Given, PrecisionPosition, Ranking, Wanted
-from linkwork.synthesis.tasks.curve_file import LARGEST, Curve, read_curve
+from linkwork.synthesis.tasks.conditions import (
+    LARGEST,
+    Curve,
+    Given,
+    PrecisionPosition,
+    Ranking,
+    Wanted,
+    read_curve,
+)
 from linkwork.synthesis.tasks.function_goal import LOOP_PAIRS, FunctionGoal
 from linkwork.synthesis.tasks.task import MECHANISMS, WATT_II, WATT_PAIRS, Task
 from linkwork.synthesis.tasks.task_keys import TASK, TURNS_FULLY

@@ -21,10 +21,11 @@ from linkwork.core.results.motion import Motion
 from linkwork.core.results.quantities.rows import RECOMMENDED, TRANSMISSION_ANGLE
 from linkwork.core.results.quantity import Kind, Rate
 from linkwork.writers.charts.axes import ChartAxes, pi_text, round_ticks, set_scale
-from linkwork.writers.charts.chart import Chart, Panel
-from linkwork.writers.charts.columns import (
+from linkwork.writers.charts.chart import (
     TIME,
+    Chart,
     Column,
+    Panel,
     abscissa_of,
     column_of,
     lead_of,

@@ -2,23 +2,33 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
 from functools import partial
+from inspect import signature
+from typing import Any
 
 import numpy as np
 
+from linkwork.circuits.results import Circuits
+from linkwork.core.drawing.matplotlib_writer import house_settings
 from linkwork.core.drawing.pose import printed_name, printed_value, reached_caption
+from linkwork.core.drawing.scene import THEMES, theme_named
 from linkwork.core.foundation.arrays import ComplexArray
 from linkwork.core.foundation.errors import InputError, UnknownNameError, choices
 from linkwork.core.foundation.names import find_spelling
 from linkwork.core.results.motion import Motion
+from linkwork.core.results.quantities.rows import TRANSMISSION_ANGLE
 from linkwork.core.results.quantity import Kind, Rate
-from linkwork.writers.charts.axes import ChartAxes, tick_step
-from linkwork.writers.charts.chart import Chart, Panel
-from linkwork.writers.charts.columns import abscissa_of, lead_of, rate_label, with_unit
-from linkwork.writers.charts.kinds import check_positions
-from linkwork.writers.charts.lines import breaks, broken
+from linkwork.writers.charts.axes import ChartAxes, chart_theme, tick_step
+from linkwork.writers.charts.chart import Chart, Panel, abscissa_of, lead_of, rate_label, with_unit
+from linkwork.writers.charts.kinds import (
+    check_positions,
+    motion_chart,
+    polar_chart,
+    transmission_chart,
+)
+from linkwork.writers.charts.lines import branch_chart, breaks, broken, circuit_chart
 
 _APART = 0.09  # of the larger side: minimum distance of the texts of stations
 _STATIONS = 9  # the largest number of stations, for angles up to a turn
@@ -253,3 +263,102 @@ def _stations(motion: Motion) -> Iterator[tuple[int, str]]:
 
 def _multiple(value: float, step: float) -> bool:
     return bool(abs(value / step - round(value / step)) < 1e-6)
+
+
+# ----------------------------------------------------------------------
+# The chart of a kind of plot, and plots for notebooks and scripts.
+#
+# ``motion.plot`` and ``circuits.plot`` draw these charts with :func:`plot`. New figures
+# belong to pyplot, so that notebooks and ``matplotlib.pyplot.show`` display them.
+
+
+#: The charts of a motion and of circuits, by their kinds; the first is the default.
+MOTION_KINDS: Mapping[str, Callable[..., Chart]] = {
+    "curves": motion_chart,
+    "polar": polar_chart,
+    "path": path_chart,
+    "hodograph": hodograph_chart,
+    TRANSMISSION_ANGLE.word: transmission_chart,
+}
+CIRCUIT_KINDS: Mapping[str, Callable[..., Chart]] = {
+    "circuits": circuit_chart,
+    "branches": branch_chart,
+}
+
+
+def motion_plot(
+    motion: Motion,
+    names: Sequence[str] = (),
+    *,
+    kind: str = "curves",
+    against: str = "",
+    wrapped: bool = False,
+) -> Chart:
+    """The chart of a motion.
+
+    Parameters
+    ----------
+    names : sequence of str
+        Columns; points for a path or a hodograph; pins for transmission angles.
+    kind : str
+        One of :data:`MOTION_KINDS`.
+    against : str
+        The column of the abscissa, or ``time``; by default the leading input.
+    wrapped : bool
+        Reduce angles to one turn.
+
+    Raises
+    ------
+    InputError
+        If there is nothing to plot, or the other options do not apply to this kind.
+    UnknownNameError
+        If a name or kind does not exist.
+    """
+    chart = _chart_of(kind, MOTION_KINDS, "of a motion", "circuits().plot")
+    options = {name: value for name, value in (("against", against), ("wrapped", wrapped)) if value}
+    for name in options:
+        if name not in signature(chart).parameters:
+            raise InputError(f'a plot of kind "{kind}" has no option {name}: leave it out')
+    return chart(motion, names, **options)
+
+
+def circuits_plot(
+    circuits: Circuits, names: Sequence[str] = (), *, kind: str = "circuits"
+) -> Chart:
+    """The chart of all circuits, together or with one panel per branch.
+
+    Raises
+    ------
+    InputError
+        If there is no circuit, or there are too many branches.
+    UnknownNameError
+        If a quantity or kind does not exist.
+    """
+    return _chart_of(kind, CIRCUIT_KINDS, "of circuits", "sweep().plot")(circuits, names)
+
+
+def _chart_of(
+    kind: str, known: Mapping[str, Callable[..., Chart]], what: str, elsewhere: str
+) -> Callable[..., Chart]:
+    if kind in known:
+        return known[kind]
+    if kind in (*MOTION_KINDS, *CIRCUIT_KINDS):
+        raise InputError(f'there is no plot {what} of kind "{kind}": use {elsewhere}')
+    options = choices("kinds", known, kind)
+    raise UnknownNameError(f'there is no plot {what} of kind "{kind}" {options}')
+
+
+def plot(chart: Chart, ax: Any, theme: str, title: str | None) -> Any:
+    """Draw a chart into a new figure or into existing axes; returns one axes, or a tuple."""
+    drawings = theme_named(theme, THEMES)
+    if title is not None:
+        chart = replace(chart, title=title, caption=chart.caption if title else "")
+    if ax is None:
+        with house_settings():
+            from matplotlib import pyplot
+
+            drawn = chart.draw_on(pyplot.figure(), chart_theme(drawings))
+    else:
+        drawn = [ax] if hasattr(ax, "plot") else list(getattr(ax, "flat", ax))
+        chart.draw_in(drawn, chart_theme(drawings))
+    return drawn[0] if len(drawn) == 1 else tuple(drawn)

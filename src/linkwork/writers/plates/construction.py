@@ -19,17 +19,20 @@ from linkwork.core.mechanism.linkage import Linkage
 from linkwork.core.mechanism.skeleton import Skeleton
 from linkwork.core.motion.model import Model
 from linkwork.core.results.motion import Motion
-from linkwork.writers.plates.bodies import (
+from linkwork.writers.plates.outlines import (
     BodyPoses,
     Guideway,
     RigidBody,
+    arms_between,
+    circle,
     guideways,
     rigid_bodies,
+    rounded,
     same_place,
+    shapely,
+    shapes_of,
     variables_of_all,
 )
-from linkwork.writers.plates.gears import GearMesh, Wheel, gear_meshes
-from linkwork.writers.plates.outlines import arms_between, circle, rounded, shapely, shapes_of
 from linkwork.writers.plates.plate import (
     BASE,
     Opening,
@@ -42,10 +45,13 @@ from linkwork.writers.plates.plate import (
 )
 from linkwork.writers.plates.wheels import (
     Blank,
+    GearMesh,
     RackMesh,
+    Wheel,
     WheelPlate,
     cam_blank,
     gear_blank,
+    gear_meshes,
     rack_meshes,
     rack_plate,
     ring_plate,

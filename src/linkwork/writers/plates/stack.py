@@ -20,9 +20,8 @@ from linkwork.core.motion.extremes import Boxes, boxes_of, refined
 from linkwork.core.motion.higher_rates import check_own_motion
 from linkwork.core.motion.model import Model
 from linkwork.core.results.motion import Motion
-from linkwork.writers.plates.bodies import BodyPoses, variables_of_all
 from linkwork.writers.plates.construction import Construction, check_webs
-from linkwork.writers.plates.outlines import shapely, shapes_of
+from linkwork.writers.plates.outlines import BodyPoses, shapely, shapes_of, variables_of_all
 from linkwork.writers.plates.plate import BASE, BRIDGE, Pin, Plate, PlateOptions, PlateStack
 
 _MOST = 200_000  # assignments tried for one number of layers

@@ -12,11 +12,11 @@ from importlib import resources
 from typing import Literal
 from xml.etree import ElementTree as Tree
 
+from linkwork.core.drawing.matplotlib_writer import render
 from linkwork.core.drawing.mechanism_scene import Sheet
-from linkwork.core.drawing.picture_file import render
 from linkwork.core.drawing.scene import Scene
 from linkwork.core.foundation.names import pretty
-from linkwork.core.results.listing.motion_listing import Column
+from linkwork.core.results.listing import Column
 from linkwork.writers.charts.chart import Chart
 
 _WIDTH = 88  # characters of a table in the type of the page

@@ -16,8 +16,7 @@ from linkwork.core.mechanism.part.part import Pair, PairKind
 from linkwork.core.motion.model import Model
 from linkwork.core.results.motion import Motion
 from linkwork.core.results.position import Position
-from linkwork.writers.robot.joint_tree import TreeJoint
-from linkwork.writers.robot.robot import Couplings, JointPolynomial, Robot, couplings_of
+from linkwork.writers.robot.robot import Couplings, JointPolynomial, Robot, TreeJoint, couplings_of
 
 #: The ground in MJCF and SDF.
 WORLD = "world"

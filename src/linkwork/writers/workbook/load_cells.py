@@ -21,9 +21,8 @@ from linkwork.core.mechanism.part.springs import Load
 from linkwork.forces.reactions.parts import wound_angle
 from linkwork.writers.formulas.closure_formulas import of_radians, rebuilt
 from linkwork.writers.formulas.rate_formulas import rate_key
-from linkwork.writers.workbook.book import Book
-from linkwork.writers.workbook.layout import print_on_one_page
-from linkwork.writers.workbook.parts import numbers_of
+from linkwork.writers.workbook.book import Book, print_on_one_page
+from linkwork.writers.workbook.reactions import numbers_of
 
 LOADS = "Loads"
 _DOWN = -math.pi / 2.0

@@ -27,19 +27,29 @@ from linkwork.writers.workbook.book import (
     NEWTON,
     VELOCITIES,
     Book,
+    FastCells,
     iterated,
+    set_up_page,
 )
-from linkwork.writers.workbook.chart_page import notices, write_about, write_charts, write_linkwork
-from linkwork.writers.workbook.cycle_page import write_cycle
-from linkwork.writers.workbook.dimension_page import write_dimensions
-from linkwork.writers.workbook.drawing_page import SHEET as DRAWING, has_drawing, write_drawing
-from linkwork.writers.workbook.equilibrium_page import EQUILIBRIUM, write_equilibrium
-from linkwork.writers.workbook.force_page import write_forces
-from linkwork.writers.workbook.layout import FastCells, set_up_page
+from linkwork.writers.workbook.cycle_page import (
+    notices,
+    write_about,
+    write_charts,
+    write_cycle,
+    write_linkwork,
+)
+from linkwork.writers.workbook.dimension_page import (
+    SHEET as DRAWING,
+    has_drawing,
+    write_dimensions,
+    write_drawing,
+)
+from linkwork.writers.workbook.force_page import EQUILIBRIUM, write_equilibrium, write_forces
 from linkwork.writers.workbook.load_cells import LOADS, force_problem, write_loads
-from linkwork.writers.workbook.newton_page import check_size, write_newton
-from linkwork.writers.workbook.rates import (
+from linkwork.writers.workbook.newton_page import (
     PARTIALS,
+    check_size,
+    write_newton,
     write_partials,
     write_velocities,
 )

@@ -9,7 +9,7 @@ from importlib import import_module
 from typing import TYPE_CHECKING
 
 from linkwork import wings
-from linkwork.core.foundation.containers import FrozenDict
+from linkwork.core.foundation.arrays import FrozenDict
 from linkwork.core.mechanism.bodies import Bodies
 from linkwork.core.mechanism.description import Key
 from linkwork.core.mechanism.machine import Friction
@@ -17,8 +17,7 @@ from linkwork.core.mechanism.part.gears import Belt, Gear, Rack
 from linkwork.core.mechanism.part.guides import Cylinder, Slider, Slot
 from linkwork.core.mechanism.part.part import Part
 from linkwork.core.mechanism.part.rolling import Rolling
-from linkwork.core.mechanism.part.springs import Load, Spring
-from linkwork.core.mechanism.part.weld import Weld
+from linkwork.core.mechanism.part.springs import Load, Spring, Weld
 
 if TYPE_CHECKING:
     from linkwork.contacts.cams import Cam

@@ -7,19 +7,16 @@ from dataclasses import dataclass
 import numpy as np
 
 from linkwork import wings
-from linkwork.core.foundation.arrays import Array
-from linkwork.core.foundation.rounding import EPSILON
+from linkwork.core.foundation.arrays import EPSILON, Array
 from linkwork.core.foundation.statuses import Certification, Status
 from linkwork.core.foundation.units import FULL_TURN
-from linkwork.core.motion.following import Drive, leading_scale, track_to, turns_freely
+from linkwork.core.motion.following import Drive, Lap, lap_of, leading_scale, track_to, turns_freely
 from linkwork.core.motion.limits import BranchEnd, ends_of
 from linkwork.core.motion.model import Model
 from linkwork.core.motion.positions import SolvedPosition, prove_rows, unproved
-from linkwork.core.motion.whole_turns import Lap, lap_of
 from linkwork.core.numerics.branch_tracking import InputPath, Node, Track, node_at, rows_on_track
-from linkwork.core.numerics.system import SolvedRows
-from linkwork.core.results.failure import Failure
-from linkwork.core.results.limit import Limit
+from linkwork.core.numerics.newton import SolvedRows
+from linkwork.core.results.failure import Failure, Limit
 from linkwork.core.results.position import Certificate
 
 

@@ -11,10 +11,15 @@ from typing import Any, Protocol
 import numpy as np
 
 from linkwork.core.expression.derivatives import Jet
-from linkwork.core.foundation.arrays import Array, BoolArray, IndexArray
-from linkwork.core.foundation.containers import FrozenDict
+from linkwork.core.foundation.arrays import (
+    EPSILON,
+    EQUAL_ROWS,
+    Array,
+    BoolArray,
+    FrozenDict,
+    IndexArray,
+)
 from linkwork.core.foundation.errors import UnknownNameError
-from linkwork.core.foundation.rounding import EPSILON, EQUAL_ROWS
 from linkwork.core.foundation.units import FULL_TURN
 from linkwork.core.mechanism.skeleton import Dyad, Skeleton, dyads_of
 from linkwork.core.results.quantity import Kind, Quantity, Rate, Units

@@ -9,8 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from linkwork.core.foundation.arrays import Array, BoolArray, IndexArray
-from linkwork.core.foundation.rounding import EPSILON, EQUAL_ROWS
+from linkwork.core.foundation.arrays import EPSILON, EQUAL_ROWS, Array, BoolArray, IndexArray
 from linkwork.core.results.quantities.definition import (
     MotionQuantity,
     MotionRows,
@@ -20,7 +19,7 @@ from linkwork.core.results.quantities.definition import (
     cubic_weight_slopes,
     cubic_weights,
 )
-from linkwork.core.results.quantities.located_rows import NOWHERE, joined_places
+from linkwork.core.results.quantities.rows import NOWHERE, joined_places
 
 PARTS = 8  # of the distance between rows
 _HALVINGS = 52

@@ -8,8 +8,15 @@ from typing import Any
 
 import numpy as np
 
-from linkwork.core.foundation.arrays import AnyArray, Array, BoolArray, IndexArray
-from linkwork.core.foundation.rounding import EPSILON, EQUAL_ROWS, REST
+from linkwork.core.foundation.arrays import (
+    EPSILON,
+    EQUAL_ROWS,
+    REST,
+    AnyArray,
+    Array,
+    BoolArray,
+    IndexArray,
+)
 from linkwork.core.results.quantities.definition import (
     MotionQuantity,
     MotionRows,
@@ -20,7 +27,7 @@ from linkwork.core.results.quantities.definition import (
     cubic_weight_slopes,
     cubic_weights,
 )
-from linkwork.core.results.quantities.located_rows import (
+from linkwork.core.results.quantities.rows import (
     NOWHERE,
     extreme_places,
     joined_places,

@@ -16,12 +16,12 @@ from linkwork.core.mechanism.description import Description
 from linkwork.core.mechanism.linkage import Draft, Linkage
 from linkwork.core.mechanism.varied_numbers import VariedNumber
 from linkwork.core.motion.model import model_of
-from linkwork.synthesis.atlas.path_atlas import NearPath, PathAtlas, placed_on_curve
+from linkwork.synthesis.atlas import NearPath, PathAtlas, placed_on_curve
 from linkwork.synthesis.improvement.curves import point_named
 from linkwork.synthesis.improvement.improving import numbers_to_vary
 from linkwork.synthesis.improvement.proved_design import ImprovedDesign, proved_design
 from linkwork.synthesis.improvement.settings import Improvement
-from linkwork.synthesis.loops.candidates import Drive
+from linkwork.synthesis.loops.limits import Drive
 from linkwork.synthesis.solvers.improvement import improve_description, mechanism_of
 from linkwork.synthesis.solvers.solving import wishes_of
 from linkwork.synthesis.solvers.swept_design import SweptDesign
