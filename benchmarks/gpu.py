@@ -22,7 +22,7 @@ from linkwork.families import Family, latin_hypercube
 from linkwork.families.compiled.compiling import Execution
 from linkwork.families.design_sweep import TablePath
 from linkwork.families.family_motion import FamilyMotion
-from linkwork.families.gpu.march import DeviceKernel, graphics_card, name_of
+from linkwork.families.gpu.kernel import DeviceKernel, graphics_card, name_of
 from linkwork.families.march.march_programs import Steps
 
 __all__ = ["FAMILIES", "Compared", "compared", "family_of", "kernel_speed", "main"]

@@ -17,8 +17,8 @@ from benchmarks import gpu
 from linkwork.core.foundation.arrays import BoolArray
 from linkwork.families import Family
 from linkwork.families.family_motion import FamilyMotion
-from linkwork.families.gpu import march as device_kernel
-from linkwork.families.gpu.march import Chunk, DeviceKernel
+from linkwork.families.gpu import kernel as device_kernel
+from linkwork.families.gpu.kernel import Chunk, DeviceKernel
 from linkwork.families.march.step_trial import MarchResult
 
 ARRAYS = ("v", "status", "certification", "radius", "turns", "limits", "limit_kinds", "alone")

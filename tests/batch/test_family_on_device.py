@@ -17,7 +17,7 @@ from benchmarks import gpu
 from linkwork.core.foundation.errors import InputError, MissingPackageError
 from linkwork.core.foundation.statuses import Status
 from linkwork.families import family as batch_family
-from linkwork.families.gpu import march as device_compiling
+from linkwork.families.gpu import kernel as device_compiling
 from tests.batch.in_simulator import ARRAYS, families, found
 
 pytestmark = pytest.mark.extended

@@ -108,6 +108,10 @@ TEXTBOOK = {
         1, 1, "slider-crank chain (RRRP)",
         "crank shaper: the driven link turns fully", 2,
     ),
+    "hoist": (1, 1, "four-link chain with 2 linear couplings", "", None),
+    "hydraulic-clutch": (
+        1, 1, "seven-link chain with 1 linear coupling", "its loop ground, pedal, master rod", None,
+    ),
     "kempe-translator": (
         2, 2, "seven-link chain with 2 degrees of freedom, 2 multiple pins",
         "", None,

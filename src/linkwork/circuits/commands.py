@@ -117,7 +117,7 @@ def _drawn(mechanism: Mechanism, found: Circuits, names: tuple[str, ...], draw: 
     if not len(found):
         return f"Did not write {draw}: there is nothing to draw."
     with progress("drawing"):
-        charts = wings.use("writers.charts.circuits")
+        charts = wings.use("writers.charts.lines")
         write(charts.circuit_chart(found, names), draw)
     every = len(mechanism.loop_equations.unknowns)
     if names or every <= charts.MOST_PANELS:

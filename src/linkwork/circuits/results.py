@@ -246,7 +246,7 @@ class Circuits(NamedSequence[Circuit]):
         UnknownNameError
             For a name that does not exist.
         """
-        plotting = wings.use("writers.charts.plotting")
+        plotting = wings.use("writers.charts.plane")
         return plotting.plot(plotting.circuits_plot(self, names, kind=kind), ax, theme, title)
 
     def __repr__(self) -> str:

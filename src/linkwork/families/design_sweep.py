@@ -406,7 +406,7 @@ def _fill(
     if has_compiler():
         return path.fill(designs, found, certify, threads, execution)
     found.clear(np.ones(found.status.shape, dtype=bool), certify)
-    done: BoolArray = wings.use("families.array_march").fill(path, designs, found, certify)
+    done: BoolArray = wings.use("families.family_march").fill(path, designs, found, certify)
     return done
 
 

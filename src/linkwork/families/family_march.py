@@ -36,7 +36,7 @@ from linkwork.families.design_sweep import (
     loop_coefficients,
     zero_coefficients,
 )
-from linkwork.families.gpu.march import DeviceKernel
+from linkwork.families.gpu.kernel import DeviceKernel
 from linkwork.families.march.dead_points import dead_points
 from linkwork.families.march.march_programs import Steps
 from linkwork.families.march.step_trial import MarchResult

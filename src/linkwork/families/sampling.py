@@ -115,11 +115,11 @@ def _read_row(
 # ----------------------------------------------------------------------
 # Plans: the values of the varied dimensions of a family.
 #
-# A plan is a mapping of arrays, the argument of :func:`linkwork.batch.designs_of`, which can also
-# be generated in chunks: ``plan.chunk(k)`` needs no other chunk, so a study can use any number of
-# workers and gives the same designs. Random plans use a counter-based generator (Philox): its key
-# is the seed, its counter the column and the chunk. The chunk size is therefore part of the plan,
-# like the seed.
+# A plan is a mapping of arrays, the argument of :func:`linkwork.families.building.designs_of`,
+# which can also be generated in chunks: ``plan.chunk(k)`` needs no other chunk, so a study can use
+# any number of workers and gives the same designs. Random plans use a counter-based generator
+# (Philox): its key is the seed, its counter the column and the chunk. The chunk size is therefore
+# part of the plan, like the seed.
 #
 # References
 # ----------

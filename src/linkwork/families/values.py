@@ -159,7 +159,9 @@ class PlaceReading:
 def _at_places() -> Callable[..., Array]:
     """Runs programs over positions: in compiled code, or with arrays."""
     compiled = has_compiler()
-    return wings.use("families.march.places" if compiled else "families.place_arrays").at_places
+    return wings.use(
+        "families.march.sweep_kernel" if compiled else "families.place_arrays"
+    ).at_places
 
 
 def design_speeds(designs: Designs) -> Array | None:

@@ -312,7 +312,7 @@ def _allowed_name(name: str) -> str:
 #
 # * lines of joints, ``ground,input,R,0,0``, one a line or between ``|`` after ``mech=``;
 # * the first links of PMKS+, ``?j=A,1.4,0.485,AB,R,t,0,0.1,t,…``;
-# * its present links, with a check sum (:mod:`linkwork.exchange.pmks_code`).
+# * its present links, with a check sum.
 
 
 TITLE, SUFFIXES = "PMKS or PMKS+ link or text", (".pmks",)

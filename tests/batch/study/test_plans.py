@@ -142,7 +142,7 @@ x = "mew <= 40"
         edited(('"four-bar"', '"four-ber"')),
         """\
 1 problem in plan.toml
-  line 3  mechanism  there is no "four-ber" (library: four-bar, double-four-bar, ackermann-steering, andrews-squeezer, antiparallelogram, atkinson-engine, balanced-lamp, beam-engine, … 83 more); the name of a file ends in .toml""",
+  line 3  mechanism  there is no "four-ber" (library: four-bar, double-four-bar, ackermann-steering, andrews-squeezer, antiparallelogram, atkinson-engine, balanced-lamp, beam-engine, … 85 more); the name of a file ends in .toml""",
     ),
     "a dimension that the mechanism lacks": (
         edited(('"O2 A"', '"O2 X"')),

@@ -335,7 +335,7 @@ def test_the_device_of_a_plan_computes_its_designs(
         return sweep(self, **options)
 
     monkeypatch.setattr(Family, "sweep", noted)
-    monkeypatch.setattr("linkwork.families.gpu.march.graphics_card", lambda: None)
+    monkeypatch.setattr("linkwork.families.gpu.kernel.graphics_card", lambda: None)
     run_study(plan, tmp_path / "out.zarr")  # in this process: a card serves one
     assert asked == ["gpu"] * plan.chunks
     with pytest.raises(InputError, match="device"):

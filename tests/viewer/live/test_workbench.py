@@ -29,7 +29,7 @@ from tests.viewer.unpacking import unpacked
 NO_LOOP = ("balanced-lamp", "door-closer", "double-pendulum", "pendulum")
 TITLES = [
     "Pin in slot", "Slider", "Cylinder", "Weld", "Gear pair", "Non-circular gears", "Belt or chain",
-    "Rack and pinion", "Rolling wheel", "Cam", "Curve", "Spring", "Load",
+    "Rack and pinion", "Rolling wheel", "Cam", "Curve", "Linear coupling", "Spring", "Load",
 ]  # fmt: skip
 
 

@@ -491,7 +491,8 @@ def take_over_frames(
 # ----------------------------------------------------------------------
 # A motion as a moving picture: every primitive is attached to a frame, or has coordinates per row.
 #
-# The primitives are those of :func:`~linkwork.drawing.mechanism_scene.scene_of`. Most are rigid:
+# The primitives are those of :func:`~linkwork.core.drawing.mechanism_scene.scene_of`. Most are
+# rigid:
 # they are fixed to ground, a link or a point. Others (pistons, rods partly hidden by a collar, …)
 # have coordinates for every row. Names and arrows keep their positions over the whole motion.
 # Nothing is solved here.

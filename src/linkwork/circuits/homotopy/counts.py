@@ -98,7 +98,7 @@ class MatroidPair:
 #
 # With x = (U, 1) in the null space of the closures and y = (V, 1) in that of their conjugates, a
 # block without lengths requires pairs with the products U_k V_k = 1, one for each link, the ground
-# among them (:mod:`linkwork.numerics.homotopy.matroid_pair`). With one coordinate for each bar of a
+# among them (below). With one coordinate for each bar of a
 # framework their number is the framework's Laman number; rigid links with more than two joints need
 # no bars.
 #

@@ -103,8 +103,8 @@ def is_singular(stuck: Any, sigma: Any) -> Any:
 # Following many solution paths of a homotopy at once, each with its own step.
 #
 # H(w, σ) = 0 is followed from σ = 1, where every solution is known, to σ = 0. The control of steps
-# is :mod:`linkwork.marching.solution_path`, which compiled code shares
-# (``linkwork.kernels.paths``). A path that cannot jump to σ = 0 in one step approaches it in ever
+# is that of ``marching``, which compiled code shares
+# (``families.paths``). A path that cannot jump to σ = 0 in one step approaches it in ever
 # smaller ones and ends as singular; unknowns on projective patches keep a path to infinity bounded.
 
 
@@ -269,7 +269,7 @@ def relative_size(change: ComplexArray, w: ComplexArray, floor: float) -> Array:
 # from random ones to any others leads to all isolated solutions of the latter with probability one
 # (Morgan & Sommese 1989, Appl. Math. Comput. 29, 123). The equations are written once, with
 # operators only: they are computed with arrays here, and recorded for compiled code by
-# ``linkwork.kernels.paths``.
+# ``families.paths``.
 
 
 #: Every unknown has a size of its own: isotropic coordinates differ by powers of ten. Near a

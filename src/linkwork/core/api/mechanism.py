@@ -185,7 +185,7 @@ class Mechanism:
         if configuration is not None:
             if from_guess or with_steps:
                 raise InputError("configuration= has no steps from a guess: leave one out")
-            return wings.use("circuits.configuration_list").solve_configuration(
+            return wings.use("circuits.circuit_list").solve_configuration(
                 self.model, at, configuration, throw=throw
             )
         return motion.solve(
@@ -289,9 +289,7 @@ class Mechanism:
             model = motion.model_of(self.description.with_range(from_, to, step))
             model = model.from_start_of(self.model)
         if configuration is not None:
-            model = wings.use("circuits.configuration_list").start_in_configuration(
-                model, configuration
-            )
+            model = wings.use("circuits.circuit_list").start_in_configuration(model, configuration)
         return motion.sweep(
             model,
             through=through,
@@ -379,7 +377,7 @@ class Mechanism:
         open 64.943
         crossed -111.77
         """
-        return wings.use("circuits.configuration_list").configurations(self.model, at)
+        return wings.use("circuits.circuit_list").configurations(self.model, at)
 
     def circuits(
         self, *, certify: bool = True, progress: Callable[[float], None] | None = None

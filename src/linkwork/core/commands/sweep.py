@@ -82,7 +82,7 @@ def write_plot(motion: Motion, names: Sequence[str], path: str, over: str = "the
     if not motion.found.any():
         return f"Did not write {path}: there is no position to plot."
     with progress("drawing"):
-        drawing.write(wings.use("writers.charts.plotting").motion_plot(motion, names), path)
+        drawing.write(wings.use("writers.charts.plane").motion_plot(motion, names), path)
     return f"Wrote {path}: {', '.join(names) or 'unknowns and outputs'} over {over}."
 
 

@@ -237,7 +237,7 @@ def scale_caption(word: str, scale: float, length_unit: str, unit: str, size: fl
 #
 # All arrows of all pictures of a motion have the same scale, a round number of length units per
 # unit of the rate; the longest arrow of the motion is at most
-# :data:`~linkwork.drawing.point_arrows.LONGEST` of the drawn size. If rates are unbounded, as near
+# :data:`LONGEST` of the drawn size. If rates are unbounded, as near
 # a dead point, the fastest rows are ignored, unless the drawn position is one of these.
 
 
@@ -325,7 +325,7 @@ def _rates(position: Position, pose: Pose, order: int) -> dict[str, complex]:
 # Forces as arrows at their points of application.
 #
 # All arrows have the same scale, a round number of length units per unit of force; the longest is
-# at most :data:`~linkwork.drawing.point_arrows.LONGEST` of the drawn size. Several forces at one
+# at most :data:`LONGEST` of the drawn size. Several forces at one
 # point are drawn separately.
 
 

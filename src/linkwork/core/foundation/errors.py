@@ -45,7 +45,7 @@ def internal_members(kind: type) -> frozenset[str]:
 #     └── NotConvergedError           exit code 1: raised only on request (``throw=True``)
 #
 # Wrong input raises an error. A computation that fails returns a
-# :class:`~linkwork.foundation.status.Status`.
+# :class:`~linkwork.core.foundation.statuses.Status`.
 
 
 _MOST_COMPARED = 100  # known names with a wrong one

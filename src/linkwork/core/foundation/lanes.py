@@ -20,10 +20,10 @@ if TYPE_CHECKING:
 #
 # :class:`Operand` is the only class of the package with operators. They call an
 # :class:`Arithmetic`, of which there are seven: numbers of many designs
-# (:mod:`~linkwork.foundation.lanes`), numbers of 32 digits (``precise``), values with two
-# derivatives (:mod:`linkwork.expression.jets`), formulas of cells, numbers with such formulas (both
-# in ``linkwork.export.workbook``), and programs for kernels (``linkwork.kernels.program.recorder``,
-# and ``complex_recorder`` for complex numbers).
+# (:class:`Lanes`), numbers of 32 digits (``precise``), values with two
+# derivatives (:mod:`linkwork.core.expression.derivatives`), formulas of cells, numbers with such
+# formulas (both in ``linkwork.writers.formulas``), and programs for kernels
+# (``linkwork.core.record.recorder``, and ``complex_recorder`` for complex numbers).
 
 
 T = TypeVar("T")
@@ -159,7 +159,7 @@ _OPERATORS: dict[object, Callable[..., Any]] = {
 # does alone.
 #
 # Functions annotated for ``float`` and ``complex`` accept lanes;
-# :mod:`~linkwork.foundation.elementwise` has functions for both. Operations that need a plain
+# This module has functions for both. Operations that need a plain
 # number (``float``, ``math``, arrays) raise :class:`NotElementwise` for lanes.
 
 

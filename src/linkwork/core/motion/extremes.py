@@ -248,7 +248,7 @@ def _limits_by_values(
 # Boxes of all positions between the rows of a motion, and how far points move in them.
 #
 # A box is a proved position with every input of an interval around its own: the unknowns stay
-# within its bounds (:func:`linkwork.numerics.proof.position_proof.reach`), and near the tangent.
+# within its bounds (:func:`linkwork.core.numerics.position_proof.reach`), and near the tangent.
 
 
 _SLACK = 1.0 + 1e-9  # covers the rounding of sums of a few dozen terms

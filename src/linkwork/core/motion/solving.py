@@ -350,7 +350,7 @@ def as_described(description: Description) -> Model:
     if not description.configuration:
         return model
     try:
-        return wings.use("circuits.configuration_list").start_in_configuration(
+        return wings.use("circuits.circuit_list").start_in_configuration(
             model, description.configuration
         )
     except InputError as error:

@@ -322,7 +322,7 @@ def weighted_radii(b: Bounds, weights: Array) -> Radii:
 # How far a motion in a box is at most from its tangent: second order in the size of the box.
 #
 # A box is a position with all solutions for inputs of an interval around its own, proved to be
-# within bounds (:func:`~linkwork.numerics.proof.position_proof.reach`).
+# within bounds (:func:`~linkwork.core.numerics.position_proof.reach`).
 
 
 def tangent_errors(

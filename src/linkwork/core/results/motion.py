@@ -359,7 +359,7 @@ class Motion:
         return float(found.max()) if len(found) else float("nan")
 
     def table(self, *names: str) -> Table:
-        """Columns with units; see :func:`linkwork.core.results.motion_table.table_of`.
+        """Columns with units.
 
         Parameters
         ----------
@@ -426,7 +426,7 @@ class Motion:
         MissingPackageError
             If Matplotlib is not installed.
         """
-        plotting = wings.use("writers.charts.plotting")
+        plotting = wings.use("writers.charts.plane")
         chart = plotting.motion_plot(self, names, kind=kind, against=against, wrapped=wrapped)
         return plotting.plot(chart, ax, theme, title)
 

@@ -109,7 +109,7 @@ _TRACE = Key(
     "trace",
     Table(
         (Key("points", _POINT_LIST, "Points whose paths are drawn", required=True),),
-        made=lambda points: points,
+        made=lambda points=(): points,
     ),
     "Traces in pictures",
 )

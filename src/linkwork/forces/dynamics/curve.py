@@ -195,7 +195,7 @@ def _extrapolate(at: list[float], v: list[Array], t: float) -> Array:
 # The curve of positions that a mechanism with one input can take, in legs with a leader each.
 #
 # On a leg one variable, its leader, determines all others; at dead points of the input another one
-# leads (see :mod:`linkwork.numerics.continuation.curve_tracing`).
+# leads (see :mod:`linkwork.core.numerics.curve_tracing`).
 
 
 _GAIN = 1e-9  # of the scale: a length that grew by more in a lap has really grown

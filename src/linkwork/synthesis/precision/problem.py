@@ -112,7 +112,7 @@ class ProductWriter:
 # Roberts' cognates of a four-bar, in isotropic coordinates: three linkages with one coupler curve.
 #
 # A linkage is x, x̄, a, ā, y, ȳ, b, b̄: moving pivots A, B and fixed pivots A0, B0 from the traced
-# point, see :mod:`linkwork.design.precision.problem`. The third fixed pivot makes a triangle with
+# point, see above. The third fixed pivot makes a triangle with
 # A0 and B0 that is similar to the coupler's (E. A. Dijksman, Motion Geometry of Mechanisms, 1976).
 
 

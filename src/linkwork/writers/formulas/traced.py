@@ -256,7 +256,7 @@ def sine(angle: LinearForm) -> LinearForm:
 # A number that records its formula while the equations are built from it.
 #
 # The builder of a mechanism's equations computes with floats and complex numbers. A traced number
-# passes through it as :class:`~linkwork.foundation.lanes.Lanes` of one design do, and knows
+# passes through it as :class:`~linkwork.core.foundation.lanes.Lanes` of one design do, and knows
 # afterwards by which formula it follows from the dimensions. Decisions are taken by its value:
 # which way round a link is, in which half turn an angle lies.
 
