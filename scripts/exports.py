@@ -16,8 +16,8 @@ from scripts.plates import READERS as PLATES, compared_plates
 from scripts.reports import READERS as REPORTS, read_report
 from scripts.robots import LOADERS, compared_robot
 from scripts.tex_pictures import compared_picture, has_latex
-from tests.exchange.round_trips import robot_round_trip, round_trip
-from tests.export.running import RUNNERS, columns_of, largest_differences
+from tests.readers.round_trips import robot_round_trip, round_trip
+from tests.writers.running import RUNNERS, columns_of, largest_differences
 
 _SUFFIXES = (".py", ".js", ".c", ".m", ".st", ".tikz", *LOADERS, *PLATES, *REPORTS)
 #: Formats that are read back: no other program is needed.

@@ -8,7 +8,7 @@ from pathlib import Path
 ROOT = Path(__file__).resolve().parents[1]
 sys.path.insert(0, str(ROOT))  # for the form defined in the tests
 
-from tests.drawing.golden_form import FOLDER, GOLDEN, drawn
+from tests.core.drawing.golden_form import FOLDER, GOLDEN, drawn
 
 
 def main() -> None:

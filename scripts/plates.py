@@ -12,7 +12,7 @@ import linkwork as lw
 from linkwork.core.foundation.errors import InputError
 from linkwork.writers.plates.files import assembled, plates_of
 from linkwork.writers.plates.plate import PlateStack
-from tests.export.plate_checks import hole_error, made, overlaps, simple, solid_error
+from tests.writers.plate_checks import hole_error, made, overlaps, simple, solid_error
 
 __all__ = ["READERS", "compared_plates"]
 

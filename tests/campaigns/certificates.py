@@ -13,7 +13,7 @@ from flint import arb
 from linkwork.core.numerics.kantorovich import Bounds, Majorant, Radii, expansion, weighted_radii
 from linkwork.core.table.loop_table import LoopTable
 from tests.campaigns.positions import Placed
-from tests.numerics.proof_bounds import bounds
+from tests.core.numerics.proof_bounds import bounds
 from tests.oracles.balls import BallTable, ball, certainly_above, exactly, newton
 
 __all__ = ["Case", "Verdict", "judge", "judge_case"]

@@ -15,7 +15,7 @@ from linkwork.readers.importing import FORMATS, read_foreign
 from tests.campaigns.fuzzing.odd import NAMES, NUMBERS, pick
 from tests.campaigns.fuzzing.texts import changed_bytes
 from tests.campaigns.fuzzing.witness import Witness
-from tests.exchange.samples import GEOGEBRA, SAMPLES, packed
+from tests.readers.samples import GEOGEBRA, SAMPLES, packed
 
 __all__ = ["import_campaign"]
 

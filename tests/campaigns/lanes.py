@@ -17,7 +17,7 @@ from linkwork.families.compiled.interpreter import run
 from linkwork.families.march.march_programs import MarchPrograms, march_programs
 from tests.campaigns.certificates import Case, Verdict, judge_case
 from tests.campaigns.positions import Placed, closed, random_position
-from tests.kernels.running import ran
+from tests.core.record.running import ran
 from tests.oracles.balls import BallTable
 
 __all__ = ["LaneClaims", "claims", "coefficients_of", "judge_lane_steps", "judge_lanes"]

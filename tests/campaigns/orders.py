@@ -23,10 +23,10 @@ from linkwork.core.motion.solving import first_position
 from linkwork.core.numerics.newton import NewtonOptions
 from tests.campaigns.motion import FAMILIES
 from tests.campaigns.snapshot_mechanisms import mechanism_of, names_of
+from tests.core.laws.transforms import mirrored, scaled
+from tests.core.motion.dyad_linkages import dyad_linkage
+from tests.core.motion.written_loops import as_loops
 from tests.described import described_as
-from tests.laws.transforms import mirrored, scaled
-from tests.motion.dyad_linkages import dyad_linkage
-from tests.motion.written_loops import as_loops
 
 __all__ = ["order_campaign", "partly_dimensioned", "permuted", "renamed"]
 

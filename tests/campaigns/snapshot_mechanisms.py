@@ -18,12 +18,12 @@ import tomlkit
 import linkwork as lw
 from linkwork.core.mechanism.linkage import Linkage
 from tests.campaigns.motion import FAMILIES, random_case
+from tests.core.equations.linkages import LINKAGES
+from tests.core.laws.contacts import KINDS as CONTACTS, contact
+from tests.core.laws.mechanisms import mechanism_of as law_mechanism
+from tests.core.motion.dyad_linkages import dyad_linkage
+from tests.core.motion.written_loops import as_loops
 from tests.described import described_as
-from tests.equations.linkages import LINKAGES
-from tests.laws.contacts import KINDS as CONTACTS, contact
-from tests.laws.mechanisms import mechanism_of as law_mechanism
-from tests.motion.dyad_linkages import dyad_linkage
-from tests.motion.written_loops import as_loops
 from tests.oracles.cranked import cranked_truss
 from tests.oracles.trusses import FIVE_LINKS, NINE_LINKS, SEVEN_LINKS, truss
 

@@ -15,7 +15,7 @@ from linkwork.core.numerics.position_proof import prove, reach, rounding_of_inpu
 from linkwork.core.table.loop_table import LoopTable
 from tests.campaigns.certificates import Verdict
 from tests.campaigns.positions import closed
-from tests.numerics.systems import Term, blocks_of, loop_table
+from tests.core.numerics.systems import Term, blocks_of, loop_table
 from tests.oracles.balls import BallTable, exactly, newton
 
 __all__ = ["beads_of", "judge_steps"]

@@ -13,7 +13,7 @@ from pathlib import Path
 import numpy as np
 
 from linkwork.families.study import chunks_with_record, verify_store
-from tests.batch.study.plans import contents
+from tests.families.study.plans import contents
 
 __all__ = ["study_campaign"]
 

@@ -18,9 +18,9 @@ import openpyxl
 
 import linkwork as lw
 from linkwork.core.mechanism.linkage import Linkage
-from tests.export.coarse import coarse
 from tests.forces.random_loads import loaded
 from tests.library_mechanisms import driven_examples, read_example
+from tests.writers.coarse import coarse
 
 __all__ = ["workbook_campaign"]
 

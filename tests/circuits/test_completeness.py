@@ -11,7 +11,7 @@ from linkwork.circuits.arcs import is_regular
 from linkwork.circuits.dead_inputs import intervals_between
 from tests.campaigns.circuits import dead_inputs_of, judge_circuits
 from tests.campaigns.motion import FAMILIES, random_mechanism
-from tests.laws.mechanisms import NAMES, mechanism_of
+from tests.core.laws.mechanisms import NAMES, mechanism_of
 from tests.oracles.cranked import cranked_truss
 from tests.thinned import thinned
 

@@ -14,7 +14,7 @@ from linkwork import families as batch
 from linkwork.core.drawing.pose import Pose
 from linkwork.core.motion.iterating import moving_loops, pulled_guess
 from linkwork.families.study import summary_of
-from tests.failures.test_words_that_help import BAR as PARTS
+from tests.core.failures.test_words_that_help import BAR as PARTS
 
 BAR = lw.example("four-bar")
 PRESS = lw.example("crank-press")

@@ -1,0 +1,5 @@
+"""The drawn four-bar, for sheets of configurations."""
+
+from tests.core.drawing.conftest import four_bar
+
+__all__ = ["four_bar"]
