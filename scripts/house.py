@@ -18,21 +18,21 @@ from pathlib import Path
 SOURCE = Path(__file__).resolve().parents[1] / "src" / "linkwork"
 #: Each measure with its goal and its ceiling.
 BOUNDS = {
-    "code lines": (84_000, 96_140),
-    "code lines of the core": (27_000, 32_100),
-    "files": (380, 509),
-    "files of the core": (130, 166),
-    "lines that import or list names": (7_000, 9_000),
-    "arrows between rooms": (70, 32),
+    "code lines": (84_000, 90_000),
+    "code lines of the core": (27_000, 30_620),
+    "files": (380, 381),
+    "files of the core": (130, 127),
+    "lines that import or list names": (7_000, 8_180),
+    "arrows between rooms": (70, 34),
     "imports of wings in the core": (0, 0),
     "names at the root": (60, 60),
     "methods of Mechanism": (24, 24),
-    "modules entered by a warm solve": (40, 24),
-    "modules entered by a warm sweep to CSV": (45, 60),
-    "modules entered by warm forces": (60, 54),
-    "modules entered by a frame of a drag": (60, 76),
-    "modules loaded by linkwork solve": (110, 131),
-    "modules loaded by linkwork sweep --csv": (130, 159),
+    "modules entered by a warm solve": (40, 22),
+    "modules entered by a warm sweep to CSV": (45, 52),
+    "modules entered by warm forces": (60, 49),
+    "modules entered by a frame of a drag": (60, 74),
+    "modules loaded by linkwork solve": (110, 108),
+    "modules loaded by linkwork sweep --csv": (130, 116),
 }
 #: Tokens that are not code.
 _LAYOUT = {

@@ -198,7 +198,7 @@ def _failing(monkeypatch: pytest.MonkeyPatch, trouble: BaseException) -> None:
     def fail(*_: object) -> None:
         raise trouble
 
-    monkeypatch.setattr("linkwork.core.commands.options.read_mechanism", fail)
+    monkeypatch.setattr("linkwork.core.commands.solve.read_mechanism", fail)
 
 
 def test_our_fault_ends_with_3_and_asks_to_report(

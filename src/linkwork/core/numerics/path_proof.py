@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from itertools import pairwise
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -27,7 +28,6 @@ from linkwork.core.numerics.branch_tracking import (
     rows_of_nodes,
     whole_turns,
 )
-from linkwork.core.numerics.curve_tracing import Curve, Leg
 from linkwork.core.numerics.newton import SolvedRows
 from linkwork.core.numerics.position_proof import (
     Place,
@@ -41,6 +41,9 @@ from linkwork.core.numerics.position_proof import (
     steps_disproved,
 )
 from linkwork.core.numerics.proved_rows import StepProver, radii_of
+
+if TYPE_CHECKING:
+    from linkwork.core.numerics.curve_tracing import Curve, Leg
 
 _HALVINGS = 45  # of one step, at most
 _QUICK = 5  # before weights are fitted to it
