@@ -77,3 +77,11 @@ def test_numbers_of_results_are_those_of_python(name: str) -> None:
         "iterates": mechanism.iterates(),
     }
     assert [where for of, found in results.items() for where in _numpy_numbers(found, of)] == []
+
+
+def test_a_check_and_equations_print_as_text() -> None:
+    mechanism = lw.example("four-bar")
+    report = str(mechanism.check())
+    assert report.startswith("Check of Four-bar linkage, open\n  written as  points and links\n")
+    assert report.endswith("  start       solved")
+    assert str(mechanism.equations()) == mechanism.equations().text().rstrip()

@@ -137,15 +137,19 @@ def test_each_of_several_inputs_follows_a_changed_mass(tmp_path: Path) -> None:
     check(sheet, robot.changed(masses={**masses, link: replace(masses[link], mass=7.0)}))
 
 
-def test_a_mechanism_whose_forces_have_no_cells_says_so(tmp_path: Path) -> None:
-    cam = coarse(loaded(lw.example("eccentric-cam")), 3)
+@pytest.mark.parametrize(
+    ("name", "part"), [("eccentric-cam", "disc (cam)"), ("hoist", "winding (linear coupling)")]
+)
+def test_a_mechanism_whose_forces_have_no_cells_says_so(
+    name: str, part: str, tmp_path: Path
+) -> None:
+    mechanism = coarse(loaded(lw.example(name)), 3)
     path = tmp_path / "forces.xlsx"
-    cam.write(path, motion=cam.sweep(certify=False))
+    mechanism.write(path, motion=mechanism.sweep(certify=False))
     sheet = Spreadsheet(path)
     assert "Forces" not in sheet.book.sheetnames
     texts = [str(cell.value) for row in sheet.book["About"].iter_rows() for cell in row]
-    (cam_part,) = described_as(Linkage, cam).cams
-    message = f"no sheets of forces: the forces of {cam_part.label} (cam) have no cells"
+    message = f"no sheets of forces: the forces of {part} have no cells"
     assert any(message in text for text in texts)
 
 

@@ -360,6 +360,9 @@ class EquationSheet:
 
     # Plain text
 
+    def __repr__(self) -> str:
+        return self.text().rstrip()
+
     def text(self, width: int = 80) -> str:
         """All equations as text of the given width."""
         return "\n".join(self._text_lines(width)) + "\n"

@@ -9,7 +9,7 @@ from typing import Any
 from linkwork.core.foundation.statuses import Status
 from linkwork.core.results.failure import Failure
 from linkwork.core.results.listing import Column, redundant_lines, significant
-from linkwork.core.results.tables import plain_fields
+from linkwork.core.results.tables import Summary, plain_fields
 
 _ROMAN = ("", "I", "II", "III", "IV", "V", "VI", "VII", "VIII", "IX", "X")
 
@@ -319,6 +319,11 @@ class CheckReport:
     classification: Classification | None = None
     unclassified: str = ""
     measured_in_parts: tuple[tuple[str, str, float, str], ...] = ()
+
+    def __repr__(self) -> str:
+        """A summary: equations, mobility, classification, and whether there is a start position."""
+        start = ("start", "solved" if self.start.ok else self.start_message)
+        return str(Summary(f"Check of {self.mechanism}", (*check_fields(self), start)))
 
     def to_dict(self) -> dict[str, Any]:
         """The report as JSON-ready data."""

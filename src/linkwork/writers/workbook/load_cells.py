@@ -18,6 +18,7 @@ from linkwork.core.mechanism.dimensions import Number
 from linkwork.core.mechanism.linkage import Linkage
 from linkwork.core.mechanism.part.part import carriers
 from linkwork.core.mechanism.part.springs import Load
+from linkwork.couplings.coupling import LinearCoupling
 from linkwork.forces.reactions.parts import wound_angle
 from linkwork.writers.formulas.closure_formulas import of_radians, rebuilt
 from linkwork.writers.formulas.rate_formulas import rate_key
@@ -33,7 +34,7 @@ def force_problem(book: Book) -> str | None:
     linkage = book.model.description
     if not isinstance(linkage, Linkage) or not linkage.loaded or not linkage.inputs:
         return ""
-    without = Cam | Curve | NoncircularGear
+    without = Cam | Curve | NoncircularGear | LinearCoupling
     others = [part for part in linkage.parts if isinstance(part, without)]
     if others:
         return f"the forces of {others[0].label} ({others[0].title.lower()}) have no cells"
