@@ -48,7 +48,8 @@ def designs_page(
     """
     inks = Inks()
     style, script = (
-        Path(__file__).with_suffix(kind).read_text(encoding="utf-8") for kind in (".css", ".js")
+        Path(__file__).with_name(f"designs_page{kind}").read_text(encoding="utf-8")
+        for kind in (".css", ".js")
     )
     pictures = [
         f"<figure>{inline_svg(scene, inks, longest=_LONGEST_PAGE)}"
