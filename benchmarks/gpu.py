@@ -19,7 +19,7 @@ import linkwork as lw
 from linkwork.core.foundation.errors import InputError
 from linkwork.core.mechanism.varied_numbers import varied_numbers
 from linkwork.families import Family, latin_hypercube
-from linkwork.families.compiled.compiling import Execution
+from linkwork.families.compiled.code_cache import Execution
 from linkwork.families.design_sweep import TablePath
 from linkwork.families.family_motion import FamilyMotion
 from linkwork.families.gpu.kernel import DeviceKernel, graphics_card, name_of

@@ -10,7 +10,7 @@ import tempfile
 import pytest
 from hypothesis import settings
 
-from linkwork.families.compiled.compiling import is_compiled
+from linkwork.families.compiled.code_cache import is_compiled
 
 # No profile has a deadline: the first example of a test pays for imports, and the
 # workers of a parallel run share their cores.

@@ -115,7 +115,7 @@ def test_lists_that_fail_in_an_interval_are_tried_elsewhere_then_told(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     monkeypatch.setattr(
-        "linkwork.circuits.arcs.is_regular",
+        "linkwork.circuits.circuit_list.is_regular",
         lambda leads, v, most=0.0: is_regular(leads, v, most),
     )
     found = lw.example("rapier-drive-limited").circuits(certify=False)

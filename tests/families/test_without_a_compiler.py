@@ -12,7 +12,7 @@ import numpy as np
 import pytest
 
 import linkwork as lw
-from linkwork.families import design_sweep, family_march as array_march, values
+from linkwork.families import array_march, design_sweep, values
 from linkwork.families.family_motion import FamilyMotion
 
 VARIED = {

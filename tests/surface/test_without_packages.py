@@ -28,7 +28,7 @@ sys.meta_path.insert(0, Missing())
 import linkwork as lw
 from linkwork import example_text
 from linkwork.synthesis.solvers.solving import solve_task
-from linkwork.app.live.browser_desk import BrowserDesk
+from linkwork.app.live.session import BrowserDesk
 
 said, told = {}, []
 for name in ("four-bar", "jansen-leg", "rapier-drive"):

@@ -84,7 +84,7 @@ const IMPORT = `
 from pyodide.ffi import can_run_sync, run_sync
 
 from linkwork import example_text, loads
-from linkwork.app.live.browser_desk import BrowserDesk
+from linkwork.app.live.session import BrowserDesk
 
 
 def solve_task(task, **options):
@@ -94,7 +94,7 @@ def solve_task(task, **options):
 
 
 def suggesting():
-    from linkwork.synthesis.suggestion import suggesting as found
+    from linkwork.synthesis import suggesting as found
 
     return found
 `;

@@ -36,7 +36,7 @@ from linkwork.core.record.closure import BlockPart
 from linkwork.core.results.failure import LimitKind
 from linkwork.core.results.motion import Motion
 from linkwork.families.building import Designs, stay_open
-from linkwork.families.compiled.compiling import Execution, has_compiler
+from linkwork.families.compiled.code_cache import Execution, has_compiler
 
 # ----------------------------------------------------------------------
 # The equations of a mechanism as input of compiled kernels.
@@ -406,7 +406,7 @@ def _fill(
     if has_compiler():
         return path.fill(designs, found, certify, threads, execution)
     found.clear(np.ones(found.status.shape, dtype=bool), certify)
-    done: BoolArray = wings.use("families.family_march").fill(path, designs, found, certify)
+    done: BoolArray = wings.use("families.array_march").fill(path, designs, found, certify)
     return done
 
 

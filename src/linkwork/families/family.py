@@ -18,7 +18,7 @@ from linkwork.core.mechanism.inputs import Input
 from linkwork.core.mechanism.linkage import Linkage
 from linkwork.core.motion.model import Model, model_of
 from linkwork.families.building import Designs, designs_of
-from linkwork.families.compiled.compiling import Execution
+from linkwork.families.compiled.code_cache import Execution
 from linkwork.families.design_sweep import design_rows
 from linkwork.families.family_motion import FamilyMotion
 

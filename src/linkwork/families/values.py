@@ -29,7 +29,7 @@ from linkwork.core.motion.model import Model, leading_input, leading_speeds
 from linkwork.core.motion.positions import QuantityValues
 from linkwork.core.record.recorder import Code, Op, Recorder, Value
 from linkwork.families.building import Designs
-from linkwork.families.compiled.compiling import has_compiler
+from linkwork.families.compiled.code_cache import has_compiler
 from linkwork.families.design_sweep import (
     DesignRows,
     block_parts,
@@ -159,9 +159,7 @@ class PlaceReading:
 def _at_places() -> Callable[..., Array]:
     """Runs programs over positions: in compiled code, or with arrays."""
     compiled = has_compiler()
-    return wings.use(
-        "families.march.sweep_kernel" if compiled else "families.place_arrays"
-    ).at_places
+    return wings.use("families.march.sweep_kernel" if compiled else "families.values").at_places
 
 
 def design_speeds(designs: Designs) -> Array | None:

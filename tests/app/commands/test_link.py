@@ -85,7 +85,7 @@ def test_the_mechanism_of_a_link_is_edited_under_a_free_name(
             tell()
             self._workbench.handle(Save())
 
-    monkeypatch.setattr("linkwork.app.live.server.LiveServer", Unserved)
+    monkeypatch.setattr("linkwork.app.commands.LiveServer", Unserved)
     for name in ("linked.toml", "linked2.toml", "linked3.toml"):
         done = run("view", LINK, "--no-browser", "--json")
         assert json.loads(done.stdout)["file"] == name

@@ -20,9 +20,8 @@ import linkwork as lw
 from linkwork.core.foundation.arrays import Array, allocate_aligned
 from linkwork.core.record.printing import trial_source
 from linkwork.core.record.recorder import LANES, SOURCES, Op
-from linkwork.families.compiled import compiling as execution, compiling as kernel_cache
-from linkwork.families.compiled.compiling import (
-    CodeFiles,
+from linkwork.families.compiled import code_cache as execution, code_cache as kernel_cache
+from linkwork.families.compiled.code_cache import (
     Execution,
     is_cached,
     is_compiled,
@@ -30,6 +29,7 @@ from linkwork.families.compiled.compiling import (
     say_that_it_compiles,
     sources_digest,
 )
+from linkwork.families.compiled.compiling import CodeFiles
 from linkwork.families.compiled.interpreter import run
 from linkwork.families.design_sweep import block_parts
 from linkwork.families.march import step_trial as step_control, sweep_kernel
@@ -269,7 +269,7 @@ def test_every_source_that_is_compiled_has_a_part_in_the_digest(tmp_path: Path) 
     changed = tmp_path / "linkwork"
     shutil.copytree(package, changed, ignore=shutil.ignore_patterns("__pycache__", "*.npz"))
     code = (
-        "import sys; from linkwork.families.compiled.compiling import sources_digest as d; "
+        "import sys; from linkwork.families.compiled.code_cache import sources_digest as d; "
         "print(d().hex())"
     )
 

@@ -315,7 +315,7 @@ def test_workers_that_cannot_start_end_the_run(
 def test_a_worker_of_another_version_refuses(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr("linkwork.families.study.study.linkwork_version", lambda: "7.8.9")
+    monkeypatch.setattr("linkwork.families.study.plan.linkwork_version", lambda: "7.8.9")
     with pytest.raises(InputError, match=r"^the study was started with Linkwork 7\.8\.9, a worker"):
         run_study(study(*FEW), tmp_path / "out.zarr", workers=2)
 

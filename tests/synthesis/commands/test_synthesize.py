@@ -332,7 +332,7 @@ def test_an_interruption_leaves_a_new_folder_with_whole_designs_and_an_earlier_o
             raise KeyboardInterrupt
         path.write_text(text)
 
-    monkeypatch.setattr("linkwork.core.foundation.files.save_text", stop_at_the_fourth)
+    monkeypatch.setattr("linkwork.synthesis.designs_folder.save_text", stop_at_the_fourth)
     with pytest.raises(KeyboardInterrupt, match="after 1 of 12 designs were written in "):
         write_designs(found, folder, FolderOptions(refused=True, draw=True, csv=True))
     names = sorted(path.name for path in folder.iterdir())
@@ -351,7 +351,7 @@ def test_an_interruption_leaves_a_new_folder_with_whole_designs_and_an_earlier_o
     found.save(folder, refused=True)
     before = {path: path.read_bytes() for path in folder.rglob("*.*")}
     assert len(before) == 13
-    monkeypatch.setattr("linkwork.core.foundation.files.save_text", stop_at_the_fourth)
+    monkeypatch.setattr("linkwork.synthesis.designs_folder.save_text", stop_at_the_fourth)
     with pytest.raises(KeyboardInterrupt):
         write_designs(found, folder, FolderOptions(force=True, csv=True))
     assert {path: path.read_bytes() for path in folder.rglob("*.*")} == before

@@ -121,7 +121,7 @@ def test_nothing_is_proved_of_a_linkage_that_misses_a_point() -> None:
 
 
 def test_a_task_without_real_solutions_has_an_empty_list(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("linkwork.core.foundation.arrays.ALMOST_REAL", 0.0)
+    monkeypatch.setattr("linkwork.synthesis.precision.solving.ALMOST_REAL", 0.0)
     found = four_bars_through(positions(LINE, None, 0.0, 1.0), track)
     assert (len(found), found.real, found.roots.complete) == (0, 0, True)
     assert found.moving_a.shape == found.guided.shape == (0, 5)

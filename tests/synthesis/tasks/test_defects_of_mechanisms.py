@@ -237,7 +237,7 @@ def _traced(monkeypatch: pytest.MonkeyPatch) -> list[TracedCurve]:
         traced.append(trace_with_proof(*given, **options))
         return traced[-1]
 
-    monkeypatch.setattr("linkwork.circuits.branches.trace_with_proof", counted)
+    monkeypatch.setattr("linkwork.circuits.arcs.trace_with_proof", counted)
     return traced
 
 

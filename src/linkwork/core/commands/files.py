@@ -172,6 +172,6 @@ def schema_command(plan: bool, task: bool) -> None:
     """
     if plan and task:
         raise InputError("--plan and --task are two schemas: ask for one")
-    plans, tasks = "families.study.plan_keys", "synthesis.tasks.task_keys"
+    plans, tasks = "families.study.plan", "synthesis.tasks.task_keys"
     form = wings.use(plans).PLAN if plan else wings.use(tasks).TASK if task else None
     click.echo(schema_text(schema_of(form) if form else None), nl=False)

@@ -12,7 +12,7 @@ import numpy as np
 from linkwork.core.foundation.arrays import AnyArray, Array, BoolArray
 from linkwork.core.foundation.errors import InputError, MissingPackageError
 from linkwork.core.record.printing import PYTHON
-from linkwork.families.compiled.compiling import Execution, load_compiled
+from linkwork.families.compiled.code_cache import Execution, load_compiled
 from linkwork.families.march.march_programs import (
     OPTIONS,
     START_STEPS,

@@ -16,13 +16,8 @@ import numpy as np
 from linkwork.core.foundation.arrays import Array, IndexArray
 from linkwork.core.numerics.marching import HALF
 from linkwork.core.record.recorder import LANES, ROLES
-from linkwork.families.compiled.compiling import (
-    compiled_for,
-    njit_no_refcount,
-    numbers,
-    say_that_it_compiles,
-    types,
-)
+from linkwork.families.compiled.code_cache import say_that_it_compiles
+from linkwork.families.compiled.compiling import compiled_for, njit_no_refcount, numbers, types
 from linkwork.families.march.march_programs import NODES
 from linkwork.families.march.step_trial import (
     GOOD,

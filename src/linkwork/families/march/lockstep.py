@@ -13,6 +13,7 @@ import numpy as np
 
 from linkwork.core.foundation.arrays import Array, BoolArray
 from linkwork.core.record.recorder import LANES, ROLES
+from linkwork.families.compiled.code_cache import say_that_it_compiles
 from linkwork.families.compiled.compiling import (
     compiled_for,
     inlined,
@@ -20,7 +21,6 @@ from linkwork.families.compiled.compiling import (
     njit_no_refcount,
     numbers,
     prefetch,
-    say_that_it_compiles,
     truths,
     types,
 )

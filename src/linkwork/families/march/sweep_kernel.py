@@ -23,7 +23,8 @@ from linkwork.core.record.printing import trial_source
 from linkwork.core.record.recorder import LANES, ROLES, Code, registers_read
 from linkwork.core.table.loop_table import LoopTable
 from linkwork.families import march as loops
-from linkwork.families.compiled.compiling import Execution, compiled, is_cached, load_compiled
+from linkwork.families.compiled.code_cache import Execution, is_cached, load_compiled
+from linkwork.families.compiled.compiling import compiled
 from linkwork.families.compiled.interpreter import run
 from linkwork.families.march.dead_points import LastNodes
 from linkwork.families.march.march_programs import (

@@ -35,14 +35,13 @@ from linkwork.core.record.recorder import (
     lower_program,
     reserve,
 )
+from linkwork.families.compiled.code_cache import PATH_LOOP, say_that_it_compiles
 from linkwork.families.compiled.compiling import (
-    PATH_LOOP,
     compiled,
     compiled_for,
     named_tuple,
     njit_no_refcount,
     numbers,
-    say_that_it_compiles,
     types,
     wholes,
 )

@@ -43,7 +43,7 @@ from linkwork.core.foundation.errors import InputError
 from linkwork.core.foundation.loading import cores
 from linkwork.core.foundation.statuses import Completeness
 from linkwork.families import paths
-from linkwork.families.compiled.compiling import PATH_LOOP, is_compiled, is_loaded
+from linkwork.families.compiled.code_cache import PATH_LOOP, is_compiled, is_loaded
 from linkwork.synthesis.loops.limits import Candidates, LoopKind
 from linkwork.synthesis.precision.positions import (
     GivenLength,
