@@ -46,10 +46,10 @@ describe("the goals of an improvement", () => {
 });
 
 describe("the verdict on a task without a sound design", () => {
-  const solved = (about: Partial<TaskSolved>): TaskSolved => ({ count: 3, sound: 0, interrupted: false, costliest: "", costs: 0, advice: "", ...about }) as TaskSolved;
-  it("names the wish to blame, else what to change", () => {
+  const solved = (about: Partial<TaskSolved>): TaskSolved => ({ count: 3, sound: 0, interrupted: false, most_restrictive: "", costs: 0, advice: "", ...about }) as TaskSolved;
+  it("names the requirement to blame, else what to change", () => {
     expect(verdict(solved({ most_restrictive: "the driven range", costs: 2 }), "motion")).toMatch(/The requirement that rejects the most designs is the driven range: without it 2/);
-    expect(verdict(solved({ most_restrictive: "the driven range", costs: 2, advice: "The best is 40°." }), "motion")).toMatch(/2 would be sound. The best is 40°.$/);
+    expect(verdict(solved({ most_restrictive: "the driven range", costs: 2, advice: "The best is 40°." }), "motion")).toMatch(/2 more would do. The best is 40°.$/);
     expect(verdict(solved({ advice: "Try to move a position." }), "motion")).toBe("No design is free of defects (3 designs). Try to move a position.");
     expect(verdict(solved({ count: 0, advice: "Start nearer." }), "improve")).toBe("No start leads to a design. Start nearer.");
     expect(verdict(solved({ count: 0 }), "motion")).toBe("No mechanism of the wanted kinds solves the task.");
