@@ -243,7 +243,7 @@ def assert_cancelled(page: Any) -> None:
     page.evaluate(
         """([first, second]) => {
           window.engine.postMessage(first);
-          setTimeout(() => window.engine.postMessage(second), 30);
+          window.engine.postMessage(second);  // it waits when the first begins to be solved
         }""",
         changes,
     )

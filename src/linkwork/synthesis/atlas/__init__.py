@@ -12,6 +12,7 @@ from zipfile import BadZipFile
 
 import numpy as np
 
+from linkwork import wings
 from linkwork.core.api.mechanism import Mechanism
 from linkwork.core.foundation.arrays import AnyArray, Array, BoolArray, ComplexArray, IndexArray
 from linkwork.core.foundation.errors import InputError, internal
@@ -23,12 +24,6 @@ from linkwork.core.mechanism.varied_numbers import number_named, with_numbers
 from linkwork.core.motion.model import model_of
 from linkwork.core.motion.sweeping import sweep
 from linkwork.core.textfile.reader import read_text
-from linkwork.families.study.store import (
-    attributes_of,
-    check_packages,
-    chunks_with_record,
-    read_chunks,
-)
 from linkwork.synthesis.tasks.conditions import FEWEST, out_of_bounds
 
 # ----------------------------------------------------------------------
@@ -315,10 +310,7 @@ class PathAtlas:
         InputError
             If a store is damaged, keeps no path, or has no closed path.
         """
-        check_packages()
-        # curves are compared without studies, which load Numba: a second
-        from linkwork.synthesis.atlas import atlas_of_stores
-
+        _stores().check_packages()
         return atlas_of_stores([as_path(store) for store in stores], progress)
 
     def save(self, path: str | Path) -> None:
@@ -501,6 +493,11 @@ def placed_on_curve(near: NearPath, name: str) -> tuple[Linkage, float]:
 _CLOSED = 1e-6  # of the path's size: the first and last row are one position
 
 
+def _stores() -> Any:
+    """The module of stores: curves are compared without it, as on a page in a browser."""
+    return wings.use("families.study.store")
+
+
 def atlas_of_stores(
     stores: Sequence[Path], progress: Callable[[float], None] | None = None
 ) -> PathAtlas:
@@ -517,7 +514,7 @@ def atlas_of_stores(
     stores = [*{path.resolve(): path for path in stores}.values()]  # each of them once
     # wrong stores are refused before the first one is read
     known = [_checked(path) for path in stores]
-    whole, done = sum(len(chunks_with_record(path)) for path in stores), 0
+    whole, done = sum(len(_stores().chunks_with_record(path)) for path in stores), 0
 
     def tell() -> None:
         nonlocal done
@@ -538,7 +535,7 @@ def atlas_of_stores(
 
 def _checked(path: Path) -> Mapping[str, Any]:
     """The attributes of a store with the path of one point."""
-    attributes = attributes_of(path)
+    attributes: Mapping[str, Any] = _stores().attributes_of(path)
     kept = attributes["linkwork_identity"]["keep"]
     count = len(_points(kept))
     if count != 1:
@@ -565,7 +562,7 @@ def _family_of_store(
     numbers = [np.zeros((0, len(names)), dtype=np.float32)]
     shapes = [np.zeros((0, 32), dtype=np.float16)]
     stored = damaged = 0
-    for chunk in read_chunks(path):
+    for chunk in _stores().read_chunks(path):
         tell()
         damaged += bool(chunk.changed)
         if damaged:
